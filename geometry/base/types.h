@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace pneuma::geometry::base {
+
+using Index = std::int32_t; // number of a node, an element, a degree of freedom
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat2 = Eigen::Matrix2d;
+using Mat3 = Eigen::Matrix3d;
+using Mat32 = Eigen::Matrix<double, 3, 2>;
+using VecX = Eigen::VectorXd;
+using MatX = Eigen::MatrixXd;
+
+} // namespace pneuma::geometry::base
+
+namespace pneuma {
+namespace base = geometry::base; // short: everybody uses it
+}

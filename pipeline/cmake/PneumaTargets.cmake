@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Folder = namespace = target: `geometry/base` is the target pneuma_geometry_base, alias pneuma::geometry::base.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(PNEUMA_CCACHE ccache)
+if(PNEUMA_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${PNEUMA_CCACHE})
+endif()
+
+set(PNEUMA_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Werror)
+
+function(_pneuma_common target)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${target} PRIVATE ${PNEUMA_WARNINGS})
+endfunction()
+
+# pneuma_library(SOURCES a.cpp ... [LINKS public targets ...] [PRIVATE_LINKS foreign libraries ...]): the library of this folder.
+function(pneuma_library)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" name ${folder})
+  string(REPLACE "/" "::" alias ${folder})
+  add_library(pneuma_${name} STATIC ${ARG_SOURCES})
+  add_library(pneuma::${alias} ALIAS pneuma_${name})
+  _pneuma_common(pneuma_${name})
+  target_link_libraries(pneuma_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
+endfunction()
+
+# pneuma_program(NAME SOURCES ... LINKS ...): an executable in bin/.
+function(pneuma_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  _pneuma_common(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS})
+  set_property(GLOBAL APPEND PROPERTY PNEUMA_PROGRAMS ${name})
+endfunction()

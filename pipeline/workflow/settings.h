@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "geometry/base/quantities.h"
+#include "geometry/mesh.h"
+#include "geometry/outline.h"
+#include "geometry/quadrature.h"
+
+// What a workflow file says, checked and in SI units: the contract of spec `workflow.md` as plain data. Both the runner
+// and the stages read it; `stage.yaml`, which the runner writes for each stage, carries the same keys with all defaults
+// filled in.
+namespace pneuma::pipeline::workflow {
+
+using base::Vec3;
+
+// Where a value stands in the user's file (1-based), to be quoted in messages.
+struct Mark {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+std::string to_string(const Mark& mark); // "cushion.yaml:14:22"
+
+struct Site {
+  base::AbsolutePressure ambient_pressure{101325};
+  double temperature = 296.15; // K
+  Vec3 up{0, 0, 1};
+  bool gravity = true;
+};
+
+struct ElasticLaw {
+  double E = 0;  // Pa
+  double nu = 0; // -
+};
+
+// A resolved material. Laws that the schema knows and the solver does not are refused when read.
+struct Material {
+  std::string name;
+  ElasticLaw law;
+  std::optional<double> density;           // kg/m3
+  std::optional<double> thermal_expansion; // 1/K
+  std::string source;
+  Mark mark;
+};
+
+struct FoilSettings {
+  std::string name;
+  std::string material;
+  double thickness = 0; // m
+  double warp = 0;      // rad
+  Mark mark;
+};
+
+struct ChamberSettings {
+  std::string name;
+  std::string outer, inner; // foil names; inner may be "base"
+  double dead_volume = 0;   // m3
+  Mark mark;
+};
+
+struct Cushion {
+  geometry::Plan plan;
+  std::map<std::string, std::string> edges; // every edge name -> clamped (others refused when read, for now)
+  std::vector<FoilSettings> foils;          // from the weather side inwards
+  bool rigid_base = false;
+  std::vector<ChamberSettings> chambers;
+  Mark mark;
+};
+
+enum class MeshPattern : std::uint8_t { automatic, structured, unstructured };
+
+struct MeshSettings {
+  geometry::ElementType element = geometry::ElementType::T6;
+  std::optional<double> size; // m
+  std::optional<std::array<int, 2>> divisions;
+  MeshPattern pattern = MeshPattern::automatic;
+  geometry::StressRule stress_rule = geometry::StressRule::full;
+  Mark mark;
+};
+
+struct SolverOptions {
+  std::optional<double> tolerance; // relative residual
+  std::optional<int> max_iterations;
+};
+
+struct FormfindSettings {
+  std::map<std::string, double> gauge_pressure; // chamber -> Pa, every chamber present
+  std::map<std::string, double> prestress;      // foil -> N/m, every foil present (`stress` already times thickness)
+};
+
+// control {type: load}: the only one so far
+struct Control {
+  std::optional<int> steps; // output at n equal parts of the path; none: automatic steps
+};
+
+enum class Reference : std::uint8_t { prestressed, stress_free };
+
+struct InflateSettings {
+  std::map<std::string, double> gauge_pressure; // chamber -> Pa
+  std::optional<Reference> reference;           // required from a formfind stage
+  std::map<std::string, double> prestress;      // foil -> N/m; only from `mesh`; empty: stress-free
+  bool contact_stops = true;
+  Control control;
+};
+
+struct RegulatedGas {
+  std::optional<double> gauge_pressure; // Pa; none: as in the `from` state
+};
+struct ClosedGas {
+  double kappa = 1;
+  std::optional<double> temperature;      // K, at the end; none: as in the `from` state
+  std::optional<double> ambient_pressure; // Pa absolute, at the end; none: as in the `from` state
+};
+struct VolumeGas {
+  double volume = 0; // m3
+};
+using Gas = std::variant<RegulatedGas, ClosedGas, VolumeGas>;
+
+struct PlanBox {
+  std::array<double, 2> x, y; // m
+};
+using PlanPolygon = std::vector<base::Vec2>;                       // m
+using Region = std::variant<std::monostate, PlanBox, PlanPolygon>; // monostate: all of the foil
+
+struct WindLoad {
+  double pressure = 0; // Pa, positive pushes against the face it acts on
+};
+struct SnowLoad {
+  double weight = 0; // Pa, per plan area of the `from` state
+};
+struct PatchLoad {
+  base::Vec2 center, size; // m
+  Vec3 force;              // N
+};
+
+struct Load {
+  std::string name;
+  std::string foil;
+  std::variant<WindLoad, SnowLoad, PatchLoad> kind;
+  Region region;
+  double factor = 1;
+  Mark mark;
+};
+
+struct WindSettings {
+  std::map<std::string, Gas> gas; // chamber -> law, every chamber present
+  std::vector<Load> loads;
+  bool contact_stops = true;
+  Control control;
+};
+
+struct StageSettings {
+  std::string id;
+  std::string run;      // mesh, formfind, inflate, wind
+  std::string from;     // stage id; empty for mesh
+  std::string from_run; // kind of the stage it starts from
+  std::variant<MeshSettings, FormfindSettings, InflateSettings, WindSettings> settings;
+  SolverOptions options;
+  Mark mark;
+};
+
+// A whole workflow file, or (read from stage.yaml) the part of it that one stage needs: then `stages` has one entry.
+struct Workflow {
+  std::filesystem::path file;
+  std::string name;
+  Site site;
+  Cushion cushion;
+  std::map<std::string, Material> materials; // those the foils use
+  std::vector<StageSettings> stages;         // in the order of the file, `mesh` first
+};
+
+// One thing wrong in a user's file. error: exit code 2; otherwise a warning.
+struct Problem {
+  Mark mark;
+  std::string message; // what is wrong, what is allowed, the nearest known key
+  bool error = true;
+};
+
+struct ReadResult {
+  Workflow workflow;             // usable only if no problem is an error
+  std::vector<Problem> problems; // all of them at once, in the order of the file
+};
+
+// Reads and checks a workflow file. Never throws for what the user wrote; every problem is in the result.
+ReadResult read_workflow(const std::filesystem::path& file);
+
+// Reads the stage.yaml that the runner wrote (or a user edited); marks of values point to the user's own file where
+// stage.yaml says where they came from. Throws InputError with all problems, a line each.
+Workflow read_stage(const std::filesystem::path& file);
+
+// The text of stage.yaml for one stage: effective values of the stage, the cushion, the used materials, the site, and
+// the place each value came from. The same workflow gives the same bytes; no absolute path and no time enters.
+std::string stage_yaml(const Workflow& workflow, const StageSettings& stage);
+
+} // namespace pneuma::pipeline::workflow
