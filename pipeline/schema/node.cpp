@@ -103,10 +103,9 @@ bool is_short(const Node& node) {
     return child.kind != NodeKind::map &&
            std::none_of(child.items.begin(), child.items.end(), [](const Node& n) { return n.kind == NodeKind::map; });
   };
-  return (node.kind == NodeKind::scalar || node.kind == NodeKind::null ||
-          node.items.size() + node.entries.size() == 0 ||
-          (std::all_of(node.items.begin(), node.items.end(), plain) &&
-           std::all_of(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return plain(e.value); }))) &&
+  if (node.items.empty() && node.entries.empty()) return true;
+  return std::all_of(node.items.begin(), node.items.end(), plain) &&
+         std::all_of(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return plain(e.value); }) &&
          in_one_line(node).size() <= line_length;
 }
 

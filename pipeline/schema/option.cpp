@@ -428,7 +428,8 @@ private:
     // a group that asks for something unavailable is not also told what else it lacks
     if (!has_unavailable) report_missing(option, node, path, value);
     for (const Option& member : option.members) {
-      if (!member.default_value.empty() && value.find(member.name) == nullptr) {
+      // an absent variant stays absent: its default names the group of one that is there
+      if (!member.default_value.empty() && member.tag.empty() && value.find(member.name) == nullptr) {
         value.members.emplace_back(member.name, read_default(member, path, value));
       }
     }
