@@ -55,6 +55,9 @@ Child start(const std::filesystem::path& program, const std::vector<std::string>
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != runner) _exit(127);
+    // a runner started in the background may have been told to ignore them
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
     const sigset_t set = interrupting();
     sigprocmask(SIG_UNBLOCK, &set, nullptr);
     dup2(nothing, STDIN_FILENO);

@@ -137,6 +137,26 @@ const Value* Value::operator[](const std::string& name) const {
   return value != nullptr && value->valid ? value : nullptr;
 }
 
+double number_of(const Value& group, const std::string& key, double otherwise) {
+  const Value* value = group[key];
+  return value != nullptr ? value->number : otherwise;
+}
+
+std::optional<double> optional_number(const Value& group, const std::string& key) {
+  const Value* value = group[key];
+  return value != nullptr ? std::optional<double>(value->number) : std::nullopt;
+}
+
+std::optional<int> optional_integer(const Value& group, const std::string& key) {
+  const std::optional<double> value = optional_number(group, key);
+  return value ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
+}
+
+std::string text_of(const Value& group, const std::string& key) {
+  const Value* value = group[key];
+  return value != nullptr ? value->text : "";
+}
+
 namespace {
 
 NodeKind kind_of(const Option& option) {

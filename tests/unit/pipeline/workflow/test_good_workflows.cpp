@@ -147,6 +147,9 @@ TEST(GoodWorkflow, ImplausibleValuesAreWarnings) {
   EXPECT_THAT(warnings_of(replaced(example, "cushion:\n", "site: {ambient_pressure: 1 kPa}\ncushion:\n")),
               HasSubstr("`ambient_pressure` 1000 Pa is unusual"));
   EXPECT_THAT(warnings_of(replaced(example, "size: 0.15 m", "size: 15 m")), HasSubstr("larger than the cushion"));
+  EXPECT_EQ(warnings_of(replaced(example, "size: 0.15 m", "size: 0.15 mm")),
+            "15:27: `size` 0.15 mm is unusual (usually 1 cm to 100 m); is it meant?\n"
+            "15:27: `size` 0.00015 m makes about 8e+08 elements a foil; is it meant?\n");
 }
 
 // Every kind of setting that a stage can have.
