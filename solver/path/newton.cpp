@@ -272,7 +272,8 @@ Newton::Stability Newton::stability(const Configuration& configuration) {
     with_law.push_back(c);
     small(c, c) += line.compliance;
   }
-  MatX reduced(with_law.size(), with_law.size());
+  const auto laws = static_cast<Eigen::Index>(with_law.size());
+  MatX reduced(laws, laws);
   for (std::size_t a = 0; a < with_law.size(); ++a) {
     for (std::size_t b = 0; b < with_law.size(); ++b) {
       reduced(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = -small(with_law[a], with_law[b]);

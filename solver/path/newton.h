@@ -12,6 +12,7 @@ using assembly::Configuration;
 using assembly::System;
 using base::Index;
 using base::MatX;
+using base::Vec3;
 using base::VecX;
 
 struct NewtonOptions {
