@@ -24,13 +24,16 @@ void add_cell(CornerMesh& mesh, Index a, Index b, Index c, Index d, bool along_a
     mesh.cells.insert(mesh.cells.end(), {a, b, d, b, c, d});
 }
 
-// Adds an n x m grid of cells; node(i, j) is the number of a grid point. Diagonals run away from the middle, towards
-// the corners: the pattern is symmetric, and no triangle at a corner is held at all three points.
+// Adds an n x m grid of cells; node(i, j) is the number of a grid point. Diagonals alternate: for even divisions the
+// pattern is symmetric, and it is the same everywhere (where diagonals of one direction meet those of another along a
+// line, linear elements lose a logarithm of the mesh size in their point values). At a corner the diagonal starts in
+// it, so that no triangle is held at all three points.
 template <class Node>
 void add_grid(CornerMesh& mesh, int n, int m, Node&& node) {
   for (int j = 0; j < m; ++j) {
     for (int i = 0; i < n; ++i) {
-      const bool rising = (2 * i + 1 - n) * (2 * j + 1 - m) >= 0;
+      const bool corner = (i == 0 || i == n - 1) && (j == 0 || j == m - 1);
+      const bool rising = corner ? (i == 0) == (j == 0) : (i + j) % 2 == 0;
       add_cell(mesh, node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1), rising);
     }
   }
@@ -113,9 +116,7 @@ CornerMesh mesh_circle(const Circle& plan, const MeshOptions& options) {
   };
   for (int ring = 0; ring < rings; ++ring) {
     for (int p = 0; p < 4 * n; ++p) {
-      // diagonals run to the corners of the core, where only three edges of the blocks meet
-      const bool to_next_corner = 2 * (p % n) + 1 >= n;
-      add_cell(mesh, node(ring, p), node(ring + 1, p), node(ring + 1, p + 1), node(ring, p + 1), !to_next_corner);
+      add_cell(mesh, node(ring, p), node(ring + 1, p), node(ring + 1, p + 1), node(ring, p + 1), (ring + p) % 2 == 0);
     }
   }
   mesh.edges = {{"rim", true, {}}};
