@@ -14,6 +14,7 @@
 #include "geometry/mesh.h"
 #include "geometry/outline.h"
 #include "geometry/quadrature.h"
+#include "pipeline/schema/node.h"
 
 // What a workflow file says, checked and in SI units: the contract of spec `workflow.md` as plain data. Both the runner
 // and the stages read it; `stage.yaml`, which the runner writes for each stage, carries the same keys with all defaults
@@ -22,13 +23,9 @@ namespace pneuma::pipeline::workflow {
 
 using base::Vec3;
 
-// Where a value stands in the user's file (1-based), to be quoted in messages.
-struct Mark {
-  std::string file;
-  int line = 0;
-  int column = 0;
-};
-std::string to_string(const Mark& mark); // "cushion.yaml:14:22"
+using schema::Mark;      // where a value stands in the user's file
+using schema::Problem;   // one thing wrong there
+using schema::to_string; // "cushion.yaml:14:22"
 
 struct Site {
   base::AbsolutePressure ambient_pressure{101325};
@@ -176,13 +173,10 @@ struct Workflow {
   Cushion cushion;
   std::map<std::string, Material> materials; // those the foils use
   std::vector<StageSettings> stages;         // in the order of the file, `mesh` first
-};
 
-// One thing wrong in a user's file. error: exit code 2; otherwise a warning.
-struct Problem {
-  Mark mark;
-  std::string message; // what is wrong, what is allowed, the nearest known key
-  bool error = true;
+  // Path of keys in stage.yaml ("cushion.foils.0.thickness", "stages.form.prestress.upper") -> where the user wrote the
+  // value, the file relative to the folder of the workflow file. Defaults have no entry.
+  std::map<std::string, Mark> origins;
 };
 
 struct ReadResult {
@@ -200,5 +194,8 @@ Workflow read_stage(const std::filesystem::path& file);
 // The text of stage.yaml for one stage: effective values of the stage, the cushion, the used materials, the site, and
 // the place each value came from. The same workflow gives the same bytes; no absolute path and no time enters.
 std::string stage_yaml(const Workflow& workflow, const StageSettings& stage);
+
+// The same without the places: equal texts mean equal settings, however the user's file is laid out.
+std::string effective_settings(const Workflow& workflow, const StageSettings& stage);
 
 } // namespace pneuma::pipeline::workflow

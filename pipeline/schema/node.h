@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pneuma::pipeline::schema {
+
+// Where something stands in a user's file (1-based), to be quoted in messages.
+struct Mark {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+std::string to_string(const Mark& mark); // "cushion.yaml:14:22"
+
+// One thing wrong in a user's file. error: exit code 2; otherwise a warning.
+struct Problem {
+  Mark mark;
+  std::string message; // what is wrong, what is allowed, the nearest known key
+  bool error = true;
+};
+std::string to_string(const Problem& problem); // "cushion.yaml:14:22: thickness ..."
+
+// YAML as plain data: what is written, not yet what it means.
+enum class NodeKind : std::uint8_t { null, scalar, list, map };
+
+struct Entry;
+
+struct Node {
+  NodeKind kind = NodeKind::null;
+  Mark mark;
+  std::string text;           // scalar
+  std::vector<Node> items;    // list
+  std::vector<Entry> entries; // map, in the order of the file
+};
+
+struct Entry {
+  std::string key;
+  Mark mark; // of the key
+  Node value;
+};
+
+Node scalar(std::string text);
+void add(Node& map, std::string key, Node value);
+const Node* find(const Node& map, const std::string& key); // nullptr: no such key
+
+// Parses YAML; `name` stands for the file in the marks. Syntax errors, duplicate keys, more than one document and
+// aliases that refer to themselves or explode are added to `problems`; the result is what could be read.
+Node parse_yaml(const std::string& text, const std::string& name, std::vector<Problem>& problems);
+
+// The text of a file; a file that cannot be read is a problem at `where`.
+std::string read_text(const std::filesystem::path& file, const Mark& where, std::vector<Problem>& problems);
+
+// YAML text of a tree: a line per scalar, short lists and maps of scalars in one line. The same tree gives the same
+// bytes; parse_yaml gives the same tree back.
+std::string write_yaml(const Node& node);
+
+// Every scalar with its path of keys and list positions, "cushion.foils.0.thickness", in the order of the file.
+std::vector<std::pair<std::string, const Node*>> leaves(const Node& node);
+
+// Replaces the mark of each scalar (and of the map around it) whose path is in `marks`.
+void replace_marks(Node& node, const std::map<std::string, Mark>& marks);
+
+} // namespace pneuma::pipeline::schema

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pneuma::pipeline::schema {
+
+// A quantity as the user wrote it, in SI; or what is wrong with it.
+struct Quantity {
+  double value = 0;  // in the wanted unit
+  std::string error; // empty: fine; otherwise a sentence that begins with what was written
+};
+
+// Reads "250 um" as a quantity of the dimension of `unit` (SI: "m", "Pa", "K", "rad", ...) and converts it to `unit`.
+// Number and unit are read apart, so that "23 degC" is 296.15 K; the unit's ratio to the wanted one must be a pure
+// number, so that "5 1/m" is no length.
+Quantity parse_quantity(std::string_view text, const std::string& unit);
+
+// The shortest text that reads back to the same double, "0.00025 m".
+std::string quantity_text(double value, const std::string& unit);
+
+// "a length", "a pressure": what `unit` measures, with an article.
+std::string dimension_of(const std::string& unit);
+
+// A plain finite number that fills all of the text.
+std::optional<double> parse_number(std::string_view text);
+
+} // namespace pneuma::pipeline::schema

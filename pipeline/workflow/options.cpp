@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/workflow/options.h"
+
+#include "pipeline/schema/json_schema.h"
+
+namespace pneuma::pipeline::workflow {
+
+namespace {
+
+using schema::choice;
+using schema::either;
+using schema::flag;
+using schema::group;
+using schema::integer;
+using schema::list;
+using schema::number;
+using schema::Option;
+using schema::quantity;
+using schema::Range;
+using schema::table;
+using schema::text;
+using schema::value;
+using schema::variant;
+using schema::word;
+
+using Options = std::vector<Option>;
+
+Options operator+(Options a, const Options& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Option length(const std::string& name, const std::string& what) {
+  return quantity(name, "m", what).positive().usual(0.01, 100, "usually 1 cm to 100 m");
+}
+
+Option point(const std::string& name, const std::string& what) {
+  return list(name, quantity("coordinate", "m", "coordinate in plan"), what).items(2, 2);
+}
+
+Option interval(const std::string& name, const std::string& what) {
+  return list(name, quantity("end", "m", "coordinate in plan"), what).items(2, 2);
+}
+
+Option vector(const std::string& name, const std::string& what) {
+  return list(name, number("component", "component"), what).items(3, 3);
+}
+
+Option pressures(const std::string& what) {
+  return table("gauge_pressure",
+               quantity("CHAMBER", "Pa", "pressure above the still air around")
+                   .usual(0, 2000, "cushions hold 200 to 800 Pa, seldom up to 2 kPa"),
+               what);
+}
+
+Option isotropic_prestress() {
+  return quantity("prestress", "N/m", "force per length, the same in all directions")
+      .positive()
+      .usual(10, 20000, "usually 0.01 to 20 kN/m");
+}
+
+Option site() {
+  return group("site",
+               {quantity("ambient_pressure", "Pa",
+                         "absolute pressure of the still air around; 0 Pa gives the thesis' gas law")
+                    .at_least(0, "at least 0 Pa")
+                    .otherwise("101325 Pa"),
+                quantity("temperature", "K", "of air and foil")
+                    .positive()
+                    .usual(213.15, 353.15, "usually -60 to 80 degC")
+                    .otherwise("23 degC"),
+                vector("up", "the direction opposite to gravity").otherwise("[0, 0, 1]"),
+                flag("gravity", "weight of the foils in inflate and wind; needs `density`").otherwise("on")},
+               "where the cushion is")
+      .otherwise("{}");
+}
+
+Option plan() {
+  const char* shapes = "rectangle, circle and triangle are available";
+  return variant("plan", "shape",
+                 {group("rectangle", {length("length", "along x").required(), length("width", "along y").required()},
+                        "edges south, east, north, west"),
+                  group("circle", {length("radius", "of the rim").required()}, "edge rim"),
+                  group("triangle",
+                        {length("side", "of an equilateral triangle"),
+                         list("points", point("corner", "a corner"), "the three corners").items(3, 3)},
+                        "edges e1, e2, e3")
+                      .exactly_one({"side", "points"}),
+                  group("regular_polygon", {}, "").unavailable(shapes), group("outline", {}, "").unavailable(shapes),
+                  group("file", {}, "").unavailable(shapes)},
+                 "the clamped outline, centred on the origin in z = 0");
+}
+
+Option cushion() {
+  const char* clamped = "clamped edges are available";
+  const Option edge = choice("EDGE",
+                             {value("clamped", "held in all directions"), value("welded", "").unavailable(clamped),
+                              value("free", "").unavailable(clamped), value("symmetry", "").unavailable(clamped)},
+                             "how the edge is held");
+  const Option foil =
+      group("foil",
+            {word("name", "of the foil").required(), word("material", "a name under `materials`").required(),
+             quantity("thickness", "m", "as rolled, unstressed")
+                 .required()
+                 .positive()
+                 .usual(1e-5, 1e-3, "foils are 10 um .. 1 mm thick"),
+             quantity("warp", "rad", "angle of the warp direction from x").otherwise("0 deg")},
+            "a foil");
+  const Option chamber = group(
+      "chamber",
+      {word("name", "of the chamber").required(),
+       list("between", word("wall", "a foil, or base"), "the two neighbouring foils around it").items(2, 2).required(),
+       quantity("dead_volume", "m3", "air in ducts").at_least(0, "at least 0 m3").otherwise("0 m3"),
+       word("connected_to", "another chamber").unavailable("every chamber has an air of its own")},
+      "a chamber");
+  return group("cushion",
+               {plan().required(), table("edges", edge, "per named edge or `all`").otherwise("{}"),
+                list("foils", foil, "from the weather side inwards").items(1, 16).required(),
+                choice("base", {value("rigid", "a flat base through the clamped edge")}, "what the last foil faces"),
+                list("chambers", chamber, "the air between neighbouring foils").otherwise("[]")},
+               "what is built");
+}
+
+Option mesh() {
+  return group("mesh",
+               {choice("element",
+                       {value("T3", "linear triangle"), value("T6", "quadratic triangle"),
+                        value("Q4", "linear quadrangle"), value("Q9", "quadratic quadrangle")},
+                       "membrane element")
+                    .otherwise("T6"),
+                length("size", "wanted size of the elements"),
+                either("divisions",
+                       {integer("n", "in both directions").between(1, 10000, "from 1 to 10000"),
+                        list("pair", integer("n", "in one direction").between(1, 10000, "from 1 to 10000"),
+                             "along length and width")
+                            .items(2, 2)},
+                       "number of elements along the edges"),
+                choice("pattern", {value("structured", "regular"), value("unstructured", "free")},
+                       "of the mesh; without it structured where the plan allows"),
+                choice("stress_rule",
+                       {value("full", "T3 1, T6 3, Q4 2x2, Q9 3x3 points"), value("reduced", "2x2 points, Q9 only")},
+                       "integration points of the stresses")
+                    .otherwise("full")},
+               "the mesh all foils get")
+      .exactly_one({"size", "divisions"});
+}
+
+Option solver_options() {
+  return group("options",
+               {number("tolerance", "relative residual at which an equilibrium is accepted")
+                    .within({0, 1, "between 0 and 1", false, false}),
+                integer("max_iterations", "per step").between(1, 1000000, "from 1 to 1000000")},
+               "of the solver")
+      .otherwise("{}");
+}
+
+Option control() {
+  const char* load = "load control is available: {type: load, steps: n}";
+  return variant(
+             "control", "type",
+             {group("load",
+                    {integer("steps", "output at n equal parts of the path").between(1, 100000, "from 1 to 100000")},
+                    "the load grows; automatic steps"),
+              group("displacement", {}, "").unavailable(load), group("volume", {}, "").unavailable(load),
+              group("arc_length", {}, "").unavailable(load)},
+             "how the path is followed")
+      .otherwise("load");
+}
+
+Option contact() {
+  return choice("contact", {value("stop", "ends the stage"), value("ignore", "goes on, marked")},
+                "what happens when foils meet")
+      .otherwise("stop");
+}
+
+Options start() {
+  return {word("from", "the stage it starts from").required()};
+}
+
+Option formfind() {
+  const char* isotropic = "an isotropic prestress (or stress) per foil is available: {all: 0.89 kN/m}";
+  const Option prestress = either("FOIL", {isotropic_prestress(), group("warp_weft", {}, "").unavailable(isotropic)},
+                                  "prestress of a foil or `all`");
+  return group("formfind",
+               start() + Options{pressures("the pressure of the form").required(),
+                                 table("prestress", prestress, "force per length"),
+                                 table("stress",
+                                       quantity("FOIL", "Pa", "stress, times the nominal thickness")
+                                           .positive()
+                                           .usual(1e4, 5e7, "usually 0.01 to 50 MPa"),
+                                       "stress of a foil or `all`"),
+                                 table("sag", text("FOIL", ""), "").unavailable(isotropic),
+                                 table("volume", text("CHAMBER", ""), "").unavailable(isotropic), solver_options()},
+               "finds the form of given prestress and pressure")
+      .exactly_one({"prestress", "stress", "sag", "volume"});
+}
+
+Option inflate() {
+  return group("inflate",
+               start() + Options{pressures("reached with regulated air").required(),
+                                 choice("reference",
+                                        {value("prestressed", "the found form carries its prestress"),
+                                         value("stress_free", "the found form is free of stress")},
+                                        "of a found form"),
+                                 table("prestress", isotropic_prestress(), "of a flat start, per foil or `all`"),
+                                 contact(), control(), solver_options()},
+               "raises the pressure");
+}
+
+Option wind() {
+  const Option gas =
+      variant("CHAMBER", "law",
+              {group("regulated",
+                     {quantity("gauge_pressure", "Pa", "set-point; without it as in the `from` state")
+                          .usual(0, 2000, "cushions hold 200 to 800 Pa, seldom up to 2 kPa")},
+                     "constant pressure"),
+               group("closed",
+                     {number("kappa", "of p V^kappa = const: 1 slow, 1.4 gusts of seconds")
+                          .within({0, 10, "above 0, up to 10", false, true})
+                          .usual(1, 1.67, "air has 1 to 1.4")
+                          .otherwise("1"),
+                      quantity("temperature", "K", "of the air in the end")
+                          .positive()
+                          .usual(213.15, 373.15, "usually -60 to 100 degC"),
+                      quantity("ambient_pressure", "Pa", "absolute, in the end").at_least(0, "at least 0 Pa")},
+                     "the air stays"),
+               group("volume", {quantity("volume", "m3", "held").required().positive()}, "incompressible")},
+              "the air of a chamber")
+          .otherwise("regulated");
+  const Option all = choice("all", {value("all", "all of the foil")}, "all of the foil");
+  const Option part = group("part",
+                            {interval("x", "from, to"), interval("y", "from, to"),
+                             list("polygon", point("corner", "a corner"), "corners in plan").items(3, 100000)},
+                            "a part in plan")
+                          .exactly_one({"x", "polygon"});
+  const Option patch =
+      group("patch",
+            {point("center", "in plan").required(),
+             list("size", length("side", "side of the rectangle"), "in plan").items(2, 2).required(),
+             list("force", quantity("component", "N", "component"), "sum, dead").items(3, 3).required()},
+            "a dead force spread over a rectangle in plan");
+  const Option load =
+      group("load",
+            {word("name", "of the load").required(), word("foil", "it acts on").required(),
+             quantity("wind", "Pa", "positive pushes against the face, negative is suction; follows the foil")
+                 .usual(-10000, 10000, "usually up to 10 kPa"),
+             quantity("snow", "Pa", "weight per plan area, straight down")
+                 .at_least(0, "at least 0 Pa")
+                 .usual(0, 20000, "usually up to 20 kPa"),
+             patch, either("region", {all, part}, "where it acts").otherwise("all")},
+            "a load")
+          .exactly_one({"wind", "snow", "patch"});
+  const char* plain = "all that a stage states is varied together";
+  return group("wind",
+               start() + Options{table("gas", gas, "per chamber [regulated]").otherwise("{}"),
+                                 list("loads", load, "what acts").otherwise("[]"),
+                                 table("factors", number("LOAD", "factor"), "of the loads, by name").otherwise("{}"),
+                                 text("duration", "").unavailable(plain),
+                                 list("history", text("point", ""), "").unavailable(plain), contact(), control(),
+                                 solver_options()},
+               "loads the inflated cushion");
+}
+
+Option stages(bool in_stage_file) {
+  const char* kinds = "formfind, inflate and wind are available";
+  Options runs = {formfind(), inflate(), wind(), group("pattern", {}, "").unavailable(kinds)};
+  if (in_stage_file) {
+    for (Option& run : runs) run.members.push_back(word("from_run", "kind of the stage it starts from").required());
+  }
+  return table("stages", variant("ID", "run", runs, "a stage"), "the stages by their IDs");
+}
+
+Option material() {
+  const char* elastic = "the isotropic elastic law is available: {law: elastic, E: 900 MPa, nu: 0.45}";
+  const auto later = [&](const char* law) { return group(law, {}, "").unavailable(elastic); };
+  return variant(
+      "NAME", "law",
+      {group(
+           "elastic",
+           {quantity("E", "Pa", "Young's modulus").required().positive().usual(1e6, 1e10, "foils have 1 MPa to 10 GPa"),
+            number("nu", "Poisson's ratio").required().within({-1, 0.5, "above -1, up to 0.5", false, true}),
+            text("E1", "").unavailable(elastic), text("E2", "").unavailable(elastic),
+            text("nu12", "").unavailable(elastic), text("G12", "").unavailable(elastic),
+            choice("tension_field",
+                   {value("off", "carries compression"), value("false", "carries compression"),
+                    value("on", "").unavailable("foils carry compression: tension_field: false"),
+                    value("true", "").unavailable("foils carry compression: tension_field: false")},
+                   "a foil that cannot carry compression")
+                .otherwise("false"),
+            quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
+            quantity("thermal_expansion", "K-1", "linear"), text("source", "where the values come from"),
+            table("strength", text("value", ""), "").unavailable("the report does not use strengths so far")},
+           "isotropic, St. Venant-Kirchhoff"),
+       later("j2"), later("ogden"), later("mooney_rivlin"), later("neo_hooke"), later("le_nurbs"), later("pd_nurbs")},
+      "a material");
+}
+
+Option root(bool in_stage_file) {
+  const Option materials = either("materials",
+                                  {text("file", "a file of materials"),
+                                   list("files", text("file", "a file of materials"), "files of materials"),
+                                   table("in_place", material(), "materials in place")},
+                                  "where the materials of the foils are");
+  const char* stage = "loads stand in a wind stage";
+  Options keys = {
+      integer("pneuma", "version of the format").between(1, 1, "1, the version this program reads").required(),
+      text("name", "of the project").otherwise("\"\""),
+      materials.required(),
+      site(),
+      cushion().required(),
+      in_stage_file ? mesh() : mesh().required(),
+      stages(in_stage_file).otherwise("{}"),
+      table("loads", text("load", ""), "").unavailable(stage),
+      table("combinations", text("combination", ""), "").unavailable(stage),
+      table("accuracy", text("goal", ""), "").unavailable("choose the mesh size by hand")};
+  return group("workflow", keys, "From form to wind for ETFE cushions");
+}
+
+} // namespace
+
+const Option& workflow_options() {
+  static const Option option = root(false);
+  return option;
+}
+
+const Option& stage_file_options() {
+  static const Option option = root(true);
+  return option;
+}
+
+const Option& materials_file_options() {
+  static const Option option = table("materials", material(), "materials by their names");
+  return option;
+}
+
+std::string workflow_json_schema() {
+  return schema::json_schema(workflow_options(), "Pneuma workflow");
+}
+
+std::string workflow_reference() {
+  return schema::reference(workflow_options());
+}
+
+} // namespace pneuma::pipeline::workflow

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "pipeline/schema/node.h"
+#include "pipeline/schema/quantity.h"
+#include "pipeline/workflow/settings.h"
+
+namespace pneuma::pipeline::workflow {
+
+namespace {
+
+using schema::add;
+using schema::Node;
+using schema::NodeKind;
+using schema::quantity_text;
+using schema::scalar;
+
+Node empty_map() {
+  Node node;
+  node.kind = NodeKind::map;
+  return node;
+}
+
+Node empty_list() {
+  Node node;
+  node.kind = NodeKind::list;
+  return node;
+}
+
+Node plain(double value) {
+  return scalar(fmt::format("{}", value));
+}
+
+Node quantity(double value, const char* unit) {
+  return scalar(quantity_text(value, unit));
+}
+
+Node lengths(double a, double b) {
+  Node node = empty_list();
+  node.items = {quantity(a, "m"), quantity(b, "m")};
+  return node;
+}
+
+Node per_name(const std::map<std::string, double>& values, const char* unit) {
+  Node node = empty_map();
+  for (const auto& [name, value] : values) add(node, name, quantity(value, unit));
+  return node;
+}
+
+Node site_node(const Site& site) {
+  Node node = empty_map();
+  add(node, "ambient_pressure", quantity(site.ambient_pressure.pascal, "Pa"));
+  add(node, "temperature", quantity(site.temperature, "K"));
+  Node up = empty_list();
+  for (int i = 0; i < 3; ++i) up.items.push_back(plain(site.up[i]));
+  add(node, "up", up);
+  add(node, "gravity", scalar(site.gravity ? "on" : "off"));
+  return node;
+}
+
+Node material_node(const Material& material) {
+  Node node = empty_map();
+  add(node, "law", scalar("elastic"));
+  add(node, "E", quantity(material.law.E, "Pa"));
+  add(node, "nu", plain(material.law.nu));
+  if (material.density) add(node, "density", quantity(*material.density, "kg/m3"));
+  if (material.thermal_expansion) add(node, "thermal_expansion", quantity(*material.thermal_expansion, "K-1"));
+  if (!material.source.empty()) add(node, "source", scalar(material.source));
+  return node;
+}
+
+Node plan_node(const geometry::Plan& plan) {
+  Node node = empty_map();
+  if (const auto* rectangle = std::get_if<geometry::Rectangle>(&plan)) {
+    add(node, "shape", scalar("rectangle"));
+    add(node, "length", quantity(rectangle->length, "m"));
+    add(node, "width", quantity(rectangle->width, "m"));
+  } else if (const auto* circle = std::get_if<geometry::Circle>(&plan)) {
+    add(node, "shape", scalar("circle"));
+    add(node, "radius", quantity(circle->radius, "m"));
+  } else {
+    add(node, "shape", scalar("triangle"));
+    Node points = empty_list();
+    for (const base::Vec2& point : std::get<geometry::Triangle>(plan).points) {
+      points.items.push_back(lengths(point.x(), point.y()));
+    }
+    add(node, "points", points);
+  }
+  return node;
+}
+
+Node cushion_node(const Cushion& cushion) {
+  Node node = empty_map();
+  add(node, "plan", plan_node(cushion.plan));
+  Node edges = empty_map();
+  for (const auto& [name, held] : cushion.edges) add(edges, name, scalar(held));
+  add(node, "edges", edges);
+  Node foils = empty_list();
+  for (const FoilSettings& foil : cushion.foils) {
+    Node item = empty_map();
+    add(item, "name", scalar(foil.name));
+    add(item, "material", scalar(foil.material));
+    add(item, "thickness", quantity(foil.thickness, "m"));
+    add(item, "warp", quantity(foil.warp, "rad"));
+    foils.items.push_back(item);
+  }
+  add(node, "foils", foils);
+  if (cushion.rigid_base) add(node, "base", scalar("rigid"));
+  Node chambers = empty_list();
+  for (const ChamberSettings& chamber : cushion.chambers) {
+    Node item = empty_map();
+    add(item, "name", scalar(chamber.name));
+    Node between = empty_list();
+    between.items = {scalar(chamber.outer), scalar(chamber.inner)};
+    add(item, "between", between);
+    add(item, "dead_volume", quantity(chamber.dead_volume, "m3"));
+    chambers.items.push_back(item);
+  }
+  add(node, "chambers", chambers);
+  return node;
+}
+
+Node mesh_node(const MeshSettings& mesh) {
+  static constexpr const char* elements[] = {"T3", "T6", "Q4", "Q9"};
+  Node node = empty_map();
+  add(node, "element", scalar(elements[static_cast<int>(mesh.element)]));
+  if (mesh.size) add(node, "size", quantity(*mesh.size, "m"));
+  if (mesh.divisions) {
+    const auto [first, second] = *mesh.divisions;
+    Node pair = empty_list();
+    pair.items = {plain(first), plain(second)};
+    add(node, "divisions", first == second ? plain(first) : pair);
+  }
+  if (mesh.pattern != MeshPattern::automatic) {
+    add(node, "pattern", scalar(mesh.pattern == MeshPattern::structured ? "structured" : "unstructured"));
+  }
+  add(node, "stress_rule", scalar(mesh.stress_rule == geometry::StressRule::full ? "full" : "reduced"));
+  return node;
+}
+
+void add_path(Node& node, bool contact_stops, const Control& control) {
+  add(node, "contact", scalar(contact_stops ? "stop" : "ignore"));
+  Node path = empty_map();
+  add(path, "type", scalar("load"));
+  if (control.steps) add(path, "steps", plain(*control.steps));
+  add(node, "control", path);
+}
+
+void add_settings(Node& node, const FormfindSettings& settings) {
+  add(node, "gauge_pressure", per_name(settings.gauge_pressure, "Pa"));
+  add(node, "prestress", per_name(settings.prestress, "N/m"));
+}
+
+void add_settings(Node& node, const InflateSettings& settings) {
+  add(node, "gauge_pressure", per_name(settings.gauge_pressure, "Pa"));
+  if (settings.reference) {
+    add(node, "reference", scalar(*settings.reference == Reference::prestressed ? "prestressed" : "stress_free"));
+  }
+  if (!settings.prestress.empty()) add(node, "prestress", per_name(settings.prestress, "N/m"));
+  add_path(node, settings.contact_stops, settings.control);
+}
+
+Node gas_node(const Gas& gas) {
+  Node node = empty_map();
+  if (const auto* regulated = std::get_if<RegulatedGas>(&gas)) {
+    add(node, "law", scalar("regulated"));
+    if (regulated->gauge_pressure) add(node, "gauge_pressure", quantity(*regulated->gauge_pressure, "Pa"));
+  } else if (const auto* closed = std::get_if<ClosedGas>(&gas)) {
+    add(node, "law", scalar("closed"));
+    add(node, "kappa", plain(closed->kappa));
+    if (closed->temperature) add(node, "temperature", quantity(*closed->temperature, "K"));
+    if (closed->ambient_pressure) add(node, "ambient_pressure", quantity(*closed->ambient_pressure, "Pa"));
+  } else {
+    add(node, "law", scalar("volume"));
+    add(node, "volume", quantity(std::get<VolumeGas>(gas).volume, "m3"));
+  }
+  return node;
+}
+
+Node region_node(const Region& region) {
+  if (std::holds_alternative<std::monostate>(region)) return scalar("all");
+  Node node = empty_map();
+  if (const auto* box = std::get_if<PlanBox>(&region)) {
+    add(node, "x", lengths(box->x[0], box->x[1]));
+    add(node, "y", lengths(box->y[0], box->y[1]));
+  } else {
+    Node corners = empty_list();
+    for (const base::Vec2& corner : std::get<PlanPolygon>(region)) {
+      corners.items.push_back(lengths(corner.x(), corner.y()));
+    }
+    add(node, "polygon", corners);
+  }
+  return node;
+}
+
+Node load_node(const Load& load) {
+  Node node = empty_map();
+  add(node, "name", scalar(load.name));
+  add(node, "foil", scalar(load.foil));
+  if (const auto* wind = std::get_if<WindLoad>(&load.kind)) {
+    add(node, "wind", quantity(wind->pressure, "Pa"));
+  } else if (const auto* snow = std::get_if<SnowLoad>(&load.kind)) {
+    add(node, "snow", quantity(snow->weight, "Pa"));
+  } else {
+    const PatchLoad& patch = std::get<PatchLoad>(load.kind);
+    Node item = empty_map();
+    add(item, "center", lengths(patch.center.x(), patch.center.y()));
+    add(item, "size", lengths(patch.size.x(), patch.size.y()));
+    Node force = empty_list();
+    for (int i = 0; i < 3; ++i) force.items.push_back(quantity(patch.force[i], "N"));
+    add(item, "force", force);
+    add(node, "patch", item);
+  }
+  add(node, "region", region_node(load.region));
+  return node;
+}
+
+void add_settings(Node& node, const WindSettings& settings) {
+  Node gas = empty_map();
+  for (const auto& [name, law] : settings.gas) add(gas, name, gas_node(law));
+  add(node, "gas", gas);
+  Node loads = empty_list(), factors = empty_map();
+  for (const Load& load : settings.loads) {
+    loads.items.push_back(load_node(load));
+    add(factors, load.name, plain(load.factor));
+  }
+  add(node, "loads", loads);
+  add(node, "factors", factors);
+  add_path(node, settings.contact_stops, settings.control);
+}
+
+void add_settings(Node&, const MeshSettings&) {} // stands at the top level
+
+Node stage_node(const StageSettings& stage) {
+  Node node = empty_map();
+  add(node, "run", scalar(stage.run));
+  add(node, "from", scalar(stage.from));
+  add(node, "from_run", scalar(stage.from_run));
+  std::visit([&](const auto& settings) { add_settings(node, settings); }, stage.settings);
+  Node options = empty_map();
+  if (stage.options.tolerance) add(options, "tolerance", plain(*stage.options.tolerance));
+  if (stage.options.max_iterations) add(options, "max_iterations", plain(*stage.options.max_iterations));
+  add(node, "options", options);
+  return node;
+}
+
+void add_settings_of(Node& node, const Workflow& workflow, const StageSettings& stage) {
+  add(node, "site", site_node(workflow.site));
+  Node materials = empty_map();
+  for (const auto& [name, material] : workflow.materials) add(materials, name, material_node(material));
+  add(node, "materials", materials);
+  add(node, "cushion", cushion_node(workflow.cushion));
+  if (const auto* mesh = std::get_if<MeshSettings>(&stage.settings)) {
+    add(node, "mesh", mesh_node(*mesh));
+  } else {
+    Node stages = empty_map();
+    add(stages, stage.id, stage_node(stage));
+    add(node, "stages", stages);
+  }
+}
+
+} // namespace
+
+// The name of the project is left out: it changes no result.
+std::string effective_settings(const Workflow& workflow, const StageSettings& stage) {
+  Node node = empty_map();
+  add_settings_of(node, workflow, stage);
+  return schema::write_yaml(node);
+}
+
+std::string stage_yaml(const Workflow& workflow, const StageSettings& stage) {
+  Node node = empty_map();
+  add(node, "pneuma", scalar("1"));
+  add(node, "name", scalar(workflow.name));
+  add_settings_of(node, workflow, stage);
+  // where the values come from; what is not listed is a default
+  Node origin = empty_map();
+  for (const auto& [path, leaf] : schema::leaves(node)) {
+    const auto known = workflow.origins.find(path);
+    if (known != workflow.origins.end()) add(origin, path, scalar(to_string(known->second)));
+  }
+  add(node, "origin", origin);
+  return schema::write_yaml(node);
+}
+
+} // namespace pneuma::pipeline::workflow
