@@ -20,9 +20,9 @@ struct Filling {
 };
 
 // Fills a simple polygon given counterclockwise; the ring's points and sides are kept as they are, and elements grow
-// from the sides' lengths. Frontal-Delaunay triangles (gmsh's algorithm 6), joined in pairs by Blossom for
-// quadrilaterals. The same input gives the same mesh. One call at a time works, others wait. Throws GeometryError where
-// gmsh finds no mesh.
+// from the sides' lengths. Frontal-Delaunay triangles (gmsh's algorithm 6), joined in pairs for quadrilaterals (by
+// Blossom up to 10 000, then greedily). The same input gives the same mesh. One call at a time works, others wait.
+// Throws GeometryError where the ring runs clockwise or crosses itself, or gmsh finds no mesh.
 Filling fill(std::span<const Vec2> ring, bool quadrilaterals);
 
 } // namespace pneuma::geometry::meshing

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/mesh_check.h"
 #include "geometry/meshing/corner_mesh.h"
 #include "geometry/meshing/structured.h"
 #include "geometry/meshing/unstructured.h"
@@ -117,7 +118,12 @@ Mesh mesh_plan(const Plan& plan, const MeshOptions& options) {
   CornerMesh corner_mesh = options.pattern == Pattern::structured ? structured_mesh(counterclockwise, options)
                                                                   : unstructured_mesh(counterclockwise, options);
   if (turned) std::swap(corner_mesh.edges[0], corner_mesh.edges[2]);
-  return complete(plan, corner_mesh, options.element);
+  Mesh mesh = complete(plan, corner_mesh, options.element);
+  for (const MeshFault& fault : check_mesh(mesh)) {
+    if (fault.severity == Severity::error)
+      throw base::GeometryError("no valid mesh of the plan: " + fault.message + "; try another size or pattern");
+  }
+  return mesh;
 }
 
 Mesh stack(const Mesh& plan_mesh, const std::vector<Layer>& layers) {
