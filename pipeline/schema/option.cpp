@@ -501,11 +501,11 @@ private:
 };
 
 void describe(const Option& option, const std::string& indent, std::string& out) {
-  out += fmt::format("{}{}: {}", indent, option.name, option.text);
   if (!option.not_yet.empty()) {
-    out += fmt::format(" [not available yet; {}]\n", option.not_yet);
+    out += fmt::format("{}{}: not available yet; {}\n", indent, option.name, option.not_yet);
     return;
   }
+  out += fmt::format("{}{}: {}", indent, option.name, option.text);
   const bool is_scalar = kind_of(option) == NodeKind::scalar && option.type != Type::either;
   if (is_scalar) out += "; " + expected(option);
   if (option.limits) out += ", " + option.limits->words;

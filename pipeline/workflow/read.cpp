@@ -113,7 +113,8 @@ private:
       out.up = vec3_of(*up);
       const double norm = out.up.norm();
       if (norm == 0) return fail(up->mark, "`up` must not be zero");
-      if (norm != 1) out.up /= norm;
+      // a normalised one stays as it is to the last bit: it is read again from stage.yaml
+      if (std::abs(norm - 1) > 1e-14) out.up /= norm;
     }
   }
 
@@ -128,9 +129,14 @@ private:
     return material;
   }
 
-  void add_material(const std::string& name, const Value& value) {
+  // `is_used`: by a foil, or in place; a file may hold more
+  void add_material(const std::string& name, const Value& value, bool is_used) {
     material_names_.push_back(name);
     if (!value.valid) return;
+    if (const Value* tension_field = value["tension_field"];
+        tension_field != nullptr && tension_field->flag && is_used) {
+      fail(tension_field->mark, "`tension_field: on` is not available yet; foils carry compression: off");
+    }
     workflow_.materials[name] = material_of(name, value);
   }
 
@@ -138,7 +144,7 @@ private:
     const Value* materials = root.find("materials");
     if (materials == nullptr) return;
     if (materials->read_as != nullptr && materials->read_as->type == schema::Type::table) {
-      for (const auto& [name, value] : materials->members) add_material(name, value);
+      for (const auto& [name, value] : materials->members) add_material(name, value, true);
       return;
     }
     materials_known_ = materials->valid;
@@ -181,7 +187,7 @@ private:
       one.entries = {entry};
       schema::Check context{problems, workflow_.origins, used.contains(entry.key)};
       const Value table = schema::check(materials_file_options(), one, "materials", context);
-      for (const auto& [name, value] : table.members) add_material(name, value);
+      for (const auto& [name, value] : table.members) add_material(name, value, used.contains(name));
     }
   }
 
@@ -225,6 +231,7 @@ private:
                     (triangle.points[0] - triangle.points[2]).norm()});
       if (!(geometry::area(out) > 1e-6 * longest * longest)) {
         fail(points->mark, "the three `points` lie on a line: a triangle needs an area");
+        plan_known_ = false;
       }
     }
   }
@@ -514,7 +521,7 @@ private:
     std::string at = from.text;
     while (at != id) {
       const auto next = known.find(at);
-      if (next == known.end() || std::find(way.begin(), way.end(), at) != way.end()) return false;
+      if (at == "mesh" || next == known.end() || std::find(way.begin(), way.end(), at) != way.end()) return false;
       way.push_back(at);
       at = text_of(*next->second, "from");
     }
@@ -674,9 +681,10 @@ private:
         std::any_of(workflow_.stages.begin(), workflow_.stages.end(),
                     [](const StageSettings& stage) { return stage.run == "inflate" || stage.run == "wind"; });
     if (!workflow_.site.gravity || !has_weight) return;
+    std::set<std::string> told;
     for (const auto& [name, mark] : material_places_) {
       const auto found = workflow_.materials.find(name);
-      if (found == workflow_.materials.end() || found->second.density) continue;
+      if (found == workflow_.materials.end() || found->second.density || !told.insert(name).second) continue;
       fail(mark, fmt::format(
                      "the material `{}` has no `density`, which gravity needs; add it, or say `site: {{gravity: off}}`",
                      name));
