@@ -7,14 +7,11 @@
 
 #include "geometry/base/types.h"
 #include "geometry/mesh.h"
+#include "geometry/polygon.h"
 
 namespace pneuma::geometry::meshing {
 
 using base::Vec2;
-
-inline double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 // One number for a side, from either end.
 inline std::uint64_t side_key(Index a, Index b) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
-#include <numeric>
 #include <string>
 #include <unordered_map>
 
@@ -13,7 +12,7 @@
 #include <gmsh.h>
 
 #include "geometry/base/errors.h"
-#include "geometry/meshing/corner_mesh.h"
+#include "geometry/polygon.h"
 
 namespace pneuma::geometry::meshing {
 
@@ -54,40 +53,15 @@ std::string complaint() {
   return last;
 }
 
-// Whether the segments a-b and c-d have a point in common.
-bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const auto apart = [](const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
-    const double first = cross(q - p, r - p);
-    const double second = cross(q - p, s - p);
-    return (first > 0 && second > 0) || (first < 0 && second < 0);
-  };
-  const bool boxes_apart =
-      (a.cwiseMax(b).array() < c.cwiseMin(d).array()).any() || (c.cwiseMax(d).array() < a.cwiseMin(b).array()).any();
-  return !boxes_apart && !apart(a, b, c, d) && !apart(c, d, a, b);
-}
-
 // gmsh 4.8.4 aborts the process at a ring that crosses itself: its exception does not leave an OpenMP region.
 void check_simple(std::span<const Vec2> ring) {
-  const std::size_t n = ring.size();
-  double doubled_area = 0;
-  for (std::size_t k = 0; k < n; ++k) doubled_area += cross(ring[k] - ring[0], ring[(k + 1) % n] - ring[0]);
-  if (!(doubled_area > 0)) throw base::GeometryError("a polygon to be meshed must run counterclockwise");
-
-  std::vector<std::size_t> by_left(n); // sides, by their smaller x
-  std::iota(by_left.begin(), by_left.end(), std::size_t{0});
-  const auto left = [&](std::size_t k) { return std::min(ring[k].x(), ring[(k + 1) % n].x()); };
-  const auto right = [&](std::size_t k) { return std::max(ring[k].x(), ring[(k + 1) % n].x()); };
-  std::sort(by_left.begin(), by_left.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t a = by_left[i];
-    for (std::size_t j = i + 1; j < n && left(by_left[j]) <= right(a); ++j) {
-      const std::size_t b = by_left[j];
-      const bool neighbours = (a + 1) % n == b || (b + 1) % n == a;
-      if (!neighbours && meet(ring[a], ring[(a + 1) % n], ring[b], ring[(b + 1) % n]))
-        throw base::GeometryError(fmt::format(
-            "the outline crosses or touches itself: its sides near ({:.6g}, {:.6g}) and ({:.6g}, {:.6g}) meet",
-            ring[a].x(), ring[a].y(), ring[b].x(), ring[b].y()));
-    }
+  if (!(signed_area(ring) > 0)) throw base::GeometryError("a polygon to be meshed must run counterclockwise");
+  if (const auto sides = crossing_sides(ring)) {
+    const Vec2& a = ring[sides->first];
+    const Vec2& b = ring[sides->second];
+    throw base::GeometryError(
+        fmt::format("the outline crosses or touches itself: its sides near ({:.6g}, {:.6g}) and ({:.6g}, {:.6g}) meet",
+                    a.x(), a.y(), b.x(), b.y()));
   }
 }
 
@@ -110,18 +84,13 @@ Filling fill_scaled(std::span<const Vec2> ring, bool quadrilaterals, const Vec2&
   if (quadrilaterals) {
     // Blossom pairs best, but its time grows with the square of the number: 30 s for 60 000 quadrilaterals
     double around = 0;
-    double doubled_area = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Vec2& next = ring[(k + 1) % count];
-      around += (next - ring[k]).norm();
-      doubled_area += cross(ring[k] - origin, next - origin);
-    }
+    for (std::size_t k = 0; k < count; ++k) around += (ring[(k + 1) % count] - ring[k]).norm();
     const double side = around / static_cast<double>(count);
     constexpr double affordable = 1e4;
     const int greedy = 0;
     const int blossom = 1;
     gmsh::option::setNumber("Mesh.RecombinationAlgorithm",
-                            doubled_area / 2 < affordable * side * side ? blossom : greedy);
+                            signed_area(ring) < affordable * side * side ? blossom : greedy);
     gmsh::model::geo::mesh::setRecombine(2, surface);
   }
   gmsh::model::geo::synchronize();
