@@ -61,6 +61,20 @@ ShapeValues<nodes_per_element(E)> shape_functions(double xi, double eta) {
   return s;
 }
 
+// Reference coordinates of an element's nodes.
+template <ElementType E>
+constexpr std::array<std::array<double, 2>, nodes_per_element(E)> node_coordinates() {
+  if constexpr (E == ElementType::T3) {
+    return {{{0, 0}, {1, 0}, {0, 1}}};
+  } else if constexpr (E == ElementType::T6) {
+    return {{{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}}};
+  } else if constexpr (E == ElementType::Q4) {
+    return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  } else {
+    return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}}};
+  }
+}
+
 // Calls `f.template operator()<E>()` for the element type known only at run time.
 template <class F>
 decltype(auto) dispatch(ElementType type, F&& f) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace pneuma::geometry::base {
 

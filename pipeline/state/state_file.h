@@ -31,8 +31,4 @@ private:
   std::vector<double> times_;
 };
 
-// sha256 of a file's bytes as 64 hexadecimal digits; throws StateError if it cannot be read.
-std::string sha256_of_file(const std::filesystem::path& path);
-std::string sha256_of_text(const std::string& text);
-
 } // namespace pneuma::pipeline::state

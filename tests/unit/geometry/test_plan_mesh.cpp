@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/meshing/fill.h"
 #include "geometry/meshing/plan_mesh.h"
 #include "geometry/quadrature.h"
 #include "geometry/shape_functions.h"
@@ -43,7 +44,7 @@ std::vector<Case> all_cases() {
       {"Rectangle", rectangle}, {"Circle", circle}, {"Triangle", triangle}};
   for (const auto& [name, plan] : plans) {
     for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
-      for (const Pattern pattern : {Pattern::structured}) {
+      for (const Pattern pattern : {Pattern::structured, Pattern::unstructured}) {
         for (const double size : {0.9, 0.25}) {
           const std::string text = name + name_of(element) + (pattern == Pattern::structured ? "Structured" : "Free") +
                                    (size > 0.5 ? "Coarse" : "Fine");
@@ -362,9 +363,29 @@ TEST(PlanMesh, RefusesBadOptionsAndSaysWhatIsAllowed) {
   EXPECT_THAT(message_of<InputError>(circle, divisions(ElementType::Q4, 4, 0)), HasSubstr("at least 1"));
   EXPECT_THAT(message_of<InputError>(triangle, divisions(ElementType::T3, 2, 0)), HasSubstr("at least 3"));
   EXPECT_THAT(message_of<InputError>(triangle, divisions(ElementType::Q9, 5, 0)), HasSubstr("even"));
+  EXPECT_THAT(
+      message_of<InputError>(rectangle, {ElementType::Q4, std::nullopt, std::array{5, 4}, Pattern::unstructured}),
+      HasSubstr("even"));
   EXPECT_THAT(message_of<GeometryError>(Rectangle{6, 0}, size(1)), HasSubstr("width must be positive"));
   EXPECT_THAT(message_of<GeometryError>(Circle{-1}, size(1)), HasSubstr("radius must be positive"));
   EXPECT_THAT(message_of<GeometryError>(Triangle{{{0, 0}, {1, 1}, {2, 2}}}, size(1)), HasSubstr("lie on a line"));
+}
+
+TEST(UnstructuredMesh, KeepsItsShapeFromAMillimetreToAHundredMetres) {
+  const Mesh mesh = mesh_plan(Circle{1}, {ElementType::Q9, 0.2, std::nullopt, Pattern::unstructured});
+  for (const double scale : {1.0 / 2048, 64.0}) {
+    const Mesh scaled = mesh_plan(Circle{scale}, {ElementType::Q9, 0.2 * scale, std::nullopt, Pattern::unstructured});
+    EXPECT_EQ(scaled.blocks[0].connectivity, mesh.blocks[0].connectivity);
+    EXPECT_NEAR(area_of(scaled), area_of(mesh) * scale * scale, 1e-13 * scale * scale);
+  }
+}
+
+TEST(Fill, RefusesRingsThatAreNoPolygon) {
+  EXPECT_THROW(fill(std::vector<pneuma::base::Vec2>{{0, 0}, {1, 0}}, false), GeometryError);
+  EXPECT_THROW(fill(std::vector<pneuma::base::Vec2>{{1, 1}, {1, 1}, {1, 1}}, false), GeometryError);
+  EXPECT_THROW(fill(std::vector<pneuma::base::Vec2>{{0, 0}, {0, 1}, {1, 1}}, false), GeometryError); // clockwise
+  EXPECT_THROW(fill(std::vector<pneuma::base::Vec2>{{0, 0}, {2, 0}, {0.5, 1}, {1, -1}}, false), GeometryError);
+  EXPECT_THROW(fill(std::vector<pneuma::base::Vec2>{{0, 0}, {2, 0}, {2, 1}, {1, 0}, {0, 1}}, false), GeometryError);
 }
 
 TEST(Stack, RefusesLayersOfOneNameAndNoLayers) {

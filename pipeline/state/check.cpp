@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/state/check.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace pneuma::pipeline::state {
+
+namespace {
+
+using geometry::Block;
+using geometry::BlockKind;
+
+std::string fault_in_numbers(const std::vector<Index>& nodes, std::size_t node_count, const std::string& whose) {
+  const auto outside = [&](Index n) { return n < 0 || static_cast<std::size_t>(n) >= node_count; };
+  const auto found = std::find_if(nodes.begin(), nodes.end(), outside);
+  if (found == nodes.end()) return {};
+  return fmt::format("{} names node {}, but there are {} nodes", whose, *found, node_count);
+}
+
+std::string fault_in_mesh(const State& state) {
+  const geometry::Mesh& mesh = state.mesh;
+  if (mesh.nodes.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max())) return "too many nodes";
+  if (state.stress_rule == geometry::StressRule::reduced && mesh.element != geometry::ElementType::Q9) {
+    return fmt::format("a reduced stress rule exists for Q9, not for {}", geometry::name_of(mesh.element));
+  }
+  const auto nodes_each = static_cast<std::size_t>(geometry::nodes_per_element(mesh.element));
+  for (const Block& block : mesh.blocks) {
+    if (block.connectivity.size() % nodes_each != 0) {
+      return fmt::format("block {}: {} node numbers are no whole number of {} elements", block.name,
+                         block.connectivity.size(), geometry::name_of(mesh.element));
+    }
+    std::string fault = fault_in_numbers(block.connectivity, mesh.nodes.size(), "block " + block.name);
+    if (!fault.empty()) return fault;
+  }
+  for (const geometry::Edge& edge : mesh.edges) {
+    std::string fault = fault_in_numbers(edge.nodes, mesh.nodes.size(), "edge " + edge.name);
+    if (!fault.empty()) return fault;
+  }
+  if (state.fixed.size() != 3 * mesh.nodes.size()) {
+    return fmt::format("{} marks of held coordinates for {} nodes", state.fixed.size(), mesh.nodes.size());
+  }
+  if (std::any_of(state.fixed.begin(), state.fixed.end(), [](std::uint8_t mark) { return mark > 1; })) {
+    return "a mark of a held coordinate is neither 0 nor 1";
+  }
+  return {};
+}
+
+std::string fault_in_foils(const State& state) {
+  const geometry::Mesh& mesh = state.mesh;
+  if (state.foils.size() != mesh.blocks.size()) {
+    return fmt::format("{} foils for {} blocks of elements", state.foils.size(), mesh.blocks.size());
+  }
+  for (std::size_t i = 0; i < mesh.blocks.size(); ++i) {
+    const Block& block = mesh.blocks[i];
+    const Foil& foil = state.foils[i];
+    const std::size_t points = gauss_count(state, block);
+    const auto wrong = [&](const char* what, const std::vector<double>& values, std::size_t expected) {
+      if (values.empty() || (values.size() == expected && block.kind == BlockKind::foil)) return std::string();
+      if (block.kind == BlockKind::base) return fmt::format("the base {} has a {}", block.name, what);
+      return fmt::format("foil {}: {} has {} values instead of {}", block.name, what, values.size(), expected);
+    };
+    for (const std::string& fault :
+         {wrong("reference", foil.reference, 3 * block.connectivity.size()),
+          wrong("predeformation", foil.predeformation, 3 * points), wrong("prestress", foil.prestress, 3 * points),
+          wrong("history", foil.history, foil.history_names.size() * points)}) {
+      if (!fault.empty()) return fault;
+    }
+  }
+  return {};
+}
+
+std::string fault_in_chambers(const State& state) {
+  const auto blocks = static_cast<Index>(state.mesh.blocks.size());
+  for (const Chamber& chamber : state.chambers) {
+    for (const Index wall : {chamber.outer, chamber.inner}) {
+      if (wall < 0 || wall >= blocks) {
+        return fmt::format("chamber {} names block {}, but there are {}", chamber.name, wall, blocks);
+      }
+    }
+    if (chamber.law > GasLaw::volume) return fmt::format("chamber {} has an unknown gas law", chamber.name);
+  }
+  return {};
+}
+
+std::string fault_in_field(const State& state, const Field& field) {
+  if (field.name.empty() || field.name == "." || field.name.find('/') != std::string::npos) {
+    return fmt::format("a field cannot be called '{}'", field.name);
+  }
+  if (field.unit.empty()) return fmt::format("field {} has no unit ('1' if it has none)", field.name);
+  if (field.components < 1) return fmt::format("field {} has {} components", field.name, field.components);
+  std::size_t places = 0;
+  switch (field.location) {
+  case Location::point:
+    places = state.mesh.nodes.size();
+    break;
+  case Location::cell:
+    if (field.name == "foil") return "the cell field foil is written by the state itself (number of the block)";
+    for (const Block& block : state.mesh.blocks) {
+      places += static_cast<std::size_t>(state.mesh.element_count(block));
+    }
+    break;
+  case Location::gauss:
+    if (field.block < 0 || static_cast<std::size_t>(field.block) >= state.mesh.blocks.size()) {
+      return fmt::format("field {} is at the Gauss points of block {}, which does not exist", field.name, field.block);
+    }
+    places = gauss_count(state, state.mesh.blocks[static_cast<std::size_t>(field.block)]);
+    break;
+  default:
+    return fmt::format("field {} is at an unknown place", field.name);
+  }
+  const std::size_t expected = places * static_cast<std::size_t>(field.components);
+  if (field.values.size() == expected) return {};
+  return fmt::format("field {} has {} values instead of {}", field.name, field.values.size(), expected);
+}
+
+} // namespace
+
+std::size_t gauss_count(const State& state, const Block& block) {
+  const auto points = geometry::stress_rule(state.mesh.element, state.stress_rule).size();
+  return static_cast<std::size_t>(state.mesh.element_count(block)) * points;
+}
+
+std::string first_fault(const State& state) {
+  for (std::string (*fault_in)(const State&) : {fault_in_mesh, fault_in_foils, fault_in_chambers}) {
+    std::string fault = fault_in(state);
+    if (!fault.empty()) return fault;
+  }
+  std::set<std::tuple<Location, Index, std::string>> names;
+  for (const Field& field : state.fields) {
+    std::string fault = fault_in_field(state, field);
+    if (!fault.empty()) return fault;
+    const Index block = field.location == Location::gauss ? field.block : -1;
+    if (!names.emplace(field.location, block, field.name).second) {
+      return fmt::format("two fields are called {}", field.name);
+    }
+  }
+  return {};
+}
+
+} // namespace pneuma::pipeline::state

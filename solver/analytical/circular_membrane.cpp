@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analytical/circular_membrane.h"
+
+#include <array>
+#include <cmath>
+
+namespace pneuma::solver::analytical {
+
+namespace {
+
+// The membrane measured from its stress-free state: a pretension is a stretch g of a smaller disc.
+struct Law {
+  double c; // E h / (1 - nu^2), N/m
+  double nu;
+
+  double nominal_meridional(double ls, double lh) const { return ls * c * 0.5 * ((ls * ls - 1) + nu * (lh * lh - 1)); }
+  double nominal_hoop(double ls, double lh) const { return nominal_meridional(lh, ls); }
+
+  // l_s with nominal_meridional = T, on the branch where T grows with l_s
+  double meridional_stretch(double T, double lh) const {
+    double ls = std::max(1.0, lh);
+    for (int i = 0; i < 60; ++i) {
+      const double slope = 0.5 * c * (3 * ls * ls - 1 + nu * (lh * lh - 1));
+      const double change = (nominal_meridional(ls, lh) - T) / slope;
+      ls -= change;
+      if (std::abs(change) < 1e-15 * ls) break;
+    }
+    return ls;
+  }
+};
+
+using Vector = std::array<double, 4>; // y = r/R, eta = T_s cos(phi), depth = int l_s sin(phi) dR, volume
+
+struct Problem {
+  Law law;
+  double pressure;
+  double rim; // stress-free radius of the rim, m
+
+  struct Local {
+    double ls, lh, sine, cosine, Ts;
+  };
+  Local local(double R, const Vector& v) const {
+    const double vertical = 0.5 * pressure * v[0] * v[0] * R; // T_s sin(phi) = p r^2 / (2 R)
+    const double Ts = std::hypot(v[1], vertical);
+    return {law.meridional_stretch(Ts, v[0]), v[0], vertical / Ts, v[1] / Ts, Ts};
+  }
+  Vector derivative(double t, const Vector& v) const {
+    const double R = rim * std::exp(t);
+    const Local l = local(R, v);
+    const double r = v[0] * R;
+    return {l.ls * l.cosine - v[0], law.nominal_hoop(l.ls, l.lh) - pressure * r * l.ls * l.sine - v[1],
+            l.ls * l.sine * R, std::acos(-1.0) * r * r * l.ls * l.sine * R};
+  }
+  // from the pole (stretch l0) to the rim; sees every station
+  template <class See>
+  Vector integrate(double l0, int steps, const See& see) const {
+    constexpr double start = -16; // R = 1e-7 rim: the pole's values hold to its square
+    const double h = -start / steps;
+    Vector v{l0, law.nominal_meridional(l0, l0), 0, 0};
+    const auto plus = [](const Vector& a, double s, const Vector& b) {
+      return Vector{a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2], a[3] + s * b[3]};
+    };
+    for (int i = 0; i < steps; ++i) {
+      const double t = start + i * h;
+      see(t, v);
+      const Vector k1 = derivative(t, v);
+      const Vector k2 = derivative(t + h / 2, plus(v, h / 2, k1));
+      const Vector k3 = derivative(t + h / 2, plus(v, h / 2, k2));
+      const Vector k4 = derivative(t + h, plus(v, h, k3));
+      for (std::size_t j = 0; j < 4; ++j) v[j] += h / 6 * (k1[j] + 2 * k2[j] + 2 * k3[j] + k4[j]);
+    }
+    see(0, v);
+    return v;
+  }
+};
+
+} // namespace
+
+std::optional<InflatedCircle> inflate(const CircularMembrane& membrane, double pressure, int steps) {
+  const double nu = membrane.poissons_ratio;
+  const Law law{membrane.stiffness / (1 - nu * nu), nu};
+  // pretension N0 = E h/(1-nu) (g^2-1)/2: the stress-free disc is smaller by g
+  const double g = std::sqrt(1 + 2 * membrane.pretension * (1 - nu) / membrane.stiffness);
+  const Problem problem{law, pressure, membrane.radius / g};
+  const auto ignore = [](double, const Vector&) {};
+  // the rim's stretch r/R grows with the pole's stretch; wanted: g
+  const auto miss = [&](double l0) { return problem.integrate(l0, steps, ignore)[0] - g; };
+  double low = g, high = g;
+  for (double step = 1e-3;; step *= 2) {
+    high = g + step;
+    if (high > 3) return std::nullopt;
+    if (miss(high) > 0) break;
+    low = high;
+  }
+  double miss_low = miss(low), miss_high = miss(high);
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) { // Illinois
+    double l0 = low + (high - low) * miss_low / (miss_low - miss_high);
+    if (!(l0 > low && l0 < high)) l0 = 0.5 * (low + high);
+    const double value = miss(l0);
+    if (value == 0) {
+      low = high = l0;
+      break;
+    }
+    if (value < 0) {
+      low = l0;
+      miss_low = value;
+      miss_high *= 0.5;
+    } else {
+      high = l0;
+      miss_high = value;
+      miss_low *= 0.5;
+    }
+  }
+
+  InflatedCircle result;
+  result.pressure = pressure;
+  const double l0 = 0.5 * (low + high);
+  const Vector end = problem.integrate(l0, steps, [&](double t, const Vector& v) {
+    const double R = problem.rim * std::exp(t);
+    const Problem::Local l = problem.local(R, v);
+    // nominal force per reference length -> Cauchy per current length: divide by the other direction's stretch
+    result.meridian.push_back({R * g, v[0] * R, -v[2], l.Ts / l.lh, law.nominal_hoop(l.ls, l.lh) / l.ls});
+  });
+  for (MeridianPoint& point : result.meridian) point.height += end[2];
+  result.deflection = end[2];
+  result.volume = end[3];
+  result.apex_tension = law.nominal_meridional(l0, l0) / l0;
+  return result;
+}
+
+std::optional<InflatedCircle> inflate_closed(const CircularMembrane& membrane, double absolute0, double volume0,
+                                             double kappa, double ambient, double external) {
+  // Net pressure p on the membrane: inside gauge pressure less external. Find p with (p + external + ambient)
+  // V(p)^kappa = absolute0 volume0^kappa; the left side grows with p.
+  const auto miss = [&](const InflatedCircle& circle) {
+    return std::log((circle.pressure + external + ambient) / absolute0) + kappa * std::log(circle.volume / volume0);
+  };
+  double low = 1e-3 * (absolute0 - ambient), high = absolute0 - ambient;
+  std::optional<InflatedCircle> at;
+  for (int i = 0; i < 60; ++i) {
+    at = inflate(membrane, high);
+    if (!at) return std::nullopt;
+    if (miss(*at) > 0) break;
+    low = high;
+    high *= 1.5;
+  }
+  std::optional<InflatedCircle> below = inflate(membrane, low);
+  if (!below) return std::nullopt;
+  double miss_low = miss(*below), miss_high = miss(*at);
+  for (int i = 0; i < 100 && high - low > 1e-13 * high; ++i) {
+    double p = low + (high - low) * miss_low / (miss_low - miss_high);
+    if (!(p > low && p < high)) p = 0.5 * (low + high);
+    at = inflate(membrane, p);
+    if (!at) return std::nullopt;
+    const double value = miss(*at);
+    if (std::abs(value) < 1e-13) return at;
+    if (value < 0) {
+      low = p;
+      miss_low = value;
+      miss_high *= 0.5;
+    } else {
+      high = p;
+      miss_high = value;
+      miss_low *= 0.5;
+    }
+  }
+  return at;
+}
+
+} // namespace pneuma::solver::analytical

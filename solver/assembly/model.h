@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "solver/chamber/gas.h"
+#include "solver/element/membrane.h"
+
+namespace pneuma::solver::assembly {
+
+using base::Index;
+using base::VecX;
+using base::Vec3;
+
+// A cushion and what acts on it along one stage's path: plain data. Values in pairs run linearly with the load factor
+// from its start (0) to its end (1).
+using Ramp = std::array<double, 2>;
+inline double at(const Ramp& ramp, double load_factor) { return ramp[0] + load_factor * (ramp[1] - ramp[0]); }
+
+// Entry i belongs to block i of the mesh; none for a rigid base.
+struct Foil {
+  element::Reference reference;
+  material::Law law;
+  double thickness = 0; // m, nominal
+};
+
+struct Chamber {
+  std::string name;
+  Index outer = 0; // block towards the weather
+  Index inner = 0; // block towards the room (foil or base)
+  double dead_volume = 0; // m3
+  chamber::Gas gas;
+  double ambient = 0; // Pa absolute; a closed law's own ambient pressure goes before it
+};
+
+// A pressure on part of a foil, along its positive normal, that follows it.
+struct PressureZone {
+  Index block = 0;
+  std::vector<Index> offset;                     // [element + 1] into points
+  std::vector<geometry::QuadraturePoint> points; // of the elements concerned
+  Ramp pressure{};                               // Pa
+};
+
+struct Model {
+  geometry::Mesh mesh;             // nodes: positions at load factor 0, m
+  std::vector<std::uint8_t> fixed; // [node][3]
+  std::vector<std::optional<Foil>> foils;
+  std::vector<Chamber> chambers;
+  std::vector<Ramp> face_pressure; // per block: pressure on the whole foil beside the chambers', along its normal, Pa
+  std::vector<PressureZone> zones;
+  VecX dead_from, dead_to; // [3 node + component], N: forces that keep their direction
+};
+
+} // namespace pneuma::solver::assembly

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/assembly/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/base/parallel.h"
+#include "geometry/volume.h"
+#include "solver/element/film.h"
+
+namespace pneuma::solver::assembly {
+
+namespace {
+
+// Adds what a follower pressure does to a foil's external force and, if asked for, subtracts its load stiffness.
+// Upper triangle of the symmetric part only: that is what the scatter reads.
+template <geometry::ElementType E>
+void symmetrize(geometry::PressureElement<E>& p) {
+  p.derivative = (0.5 * (p.derivative + p.derivative.transpose())).eval();
+}
+
+} // namespace
+
+System::System(Model model, int threads) : model_(std::move(model)), threads_(threads) {
+  const geometry::Mesh& mesh = model_.mesh;
+  origin_ = Vec3::Zero();
+  for (const Vec3& x : mesh.nodes) origin_ += x / static_cast<double>(mesh.nodes.size());
+
+  foil_of_block_.assign(mesh.blocks.size(), -1);
+  base_volume_.assign(mesh.blocks.size(), 0.0);
+  std::vector<Index> owner(mesh.nodes.size() * 3, -1);
+  const auto n = static_cast<std::size_t>(geometry::nodes_per_element(mesh.element));
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const geometry::Block& block = mesh.blocks[b];
+    if (!model_.foils[b]) {
+      base_volume_[b] = geometry::volume_below(mesh, block, mesh.nodes, origin_);
+      continue;
+    }
+    foil_of_block_[b] = static_cast<Index>(foils_.size());
+    FoilEquations foil;
+    foil.block = static_cast<Index>(b);
+    const Foil& data = *model_.foils[b];
+    foil.membrane = {block.connectivity, data.reference, data.law, data.thickness};
+
+    std::vector<Index> unknown(mesh.nodes.size() * 3, -1);
+    std::vector<Index> element_unknowns;
+    element_unknowns.reserve(block.connectivity.size() * 3);
+    for (const Index node : block.connectivity) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t coordinate = 3 * static_cast<std::size_t>(node) + c;
+        if (model_.fixed[coordinate] == 0 && unknown[coordinate] < 0) {
+          if (owner[coordinate] >= 0) {
+            const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
+            throw base::InputError(
+                fmt::format("two foils share a free node at ({:.6g}, {:.6g}, {:.6g}) m: every edge must be clamped",
+                            x.x(), x.y(), x.z()));
+          }
+          owner[coordinate] = static_cast<Index>(b);
+          unknown[coordinate] = static_cast<Index>(foil.coordinate.size());
+          foil.coordinate.push_back(static_cast<Index>(coordinate));
+        }
+        element_unknowns.push_back(unknown[coordinate]);
+      }
+    }
+    linear::PatternAndScatter made =
+        linear::make_pattern(static_cast<Index>(foil.coordinate.size()), element_unknowns, static_cast<Index>(3 * n));
+    foil.pattern = std::move(made.pattern);
+    foil.scatter = std::move(made.scatter);
+
+    foil.laplacian.assign(foil.pattern.row.size(), 0.0);
+    const element::Film film{mesh.element, data.reference.rule, block.connectivity, 1.0};
+    double area = 0;
+    const Index degenerate =
+        element::film_forces(film, mesh.nodes, 0.0, area, [&](const element::ElementBatch& batch) {
+          linear::scatter_add(foil.scatter, batch.first, batch.tangent, foil.laplacian);
+        });
+    if (degenerate >= 0) {
+      throw base::GeometryError(fmt::format("element {} of foil `{}` has no area", degenerate, block.name));
+    }
+    foils_.push_back(std::move(foil));
+
+    const auto history = static_cast<std::size_t>(material::history_components(data.law)) * data.reference.area.size();
+    old_history_.emplace_back(history, 0.0);
+    new_history_.emplace_back(history, 0.0);
+  }
+  failed_element_.assign(foils_.size(), -1);
+  if (model_.face_pressure.empty()) model_.face_pressure.assign(mesh.blocks.size(), Ramp{});
+  const auto coordinates = static_cast<Eigen::Index>(3 * mesh.nodes.size());
+  if (model_.dead_from.size() == 0) model_.dead_from = VecX::Zero(coordinates);
+  if (model_.dead_to.size() == 0) model_.dead_to = VecX::Zero(coordinates);
+}
+
+Index System::unknowns() const {
+  Index count = 0;
+  for (const FoilEquations& foil : foils_) count += foil.pattern.size;
+  return count;
+}
+
+double System::net_pressure(Index block, const Configuration& configuration) const {
+  double pressure = at(model_.face_pressure[static_cast<std::size_t>(block)], configuration.load_factor);
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    const double p = configuration.pressures[static_cast<Eigen::Index>(c)];
+    if (model_.chambers[c].outer == block) pressure += p; // air below pushes the foil out
+    if (model_.chambers[c].inner == block) pressure -= p;
+  }
+  return pressure;
+}
+
+void System::evaluate_foil(FoilEquations& foil, const Configuration& configuration, bool with_tangent) {
+  const auto index = static_cast<std::size_t>(&foil - foils_.data());
+  const auto coordinates = static_cast<Eigen::Index>(3 * configuration.positions.size());
+  foil.pressure = net_pressure(foil.block, configuration);
+  foil.volume = 0;
+  foil.energy = 0;
+  foil.internal.setZero(coordinates);
+  foil.external.setZero(coordinates);
+  VecX unit = VecX::Zero(coordinates); // force of a unit pressure
+  if (with_tangent) foil.tangent.assign(foil.pattern.row.size(), 0.0);
+
+  const std::span<const Index> connectivity = foil.membrane.connectivity;
+  geometry::dispatch(model_.mesh.element, [&]<geometry::ElementType E>() {
+    constexpr int n = geometry::nodes_per_element(E);
+    constexpr int size = 3 * n;
+    const auto add = [&](Index e, const double* values, double factor, VecX& target) {
+      const Index* node = connectivity.data() + static_cast<std::size_t>(e) * n;
+      for (int a = 0; a < n; ++a) {
+        for (int c = 0; c < 3; ++c) target[3 * node[a] + c] += factor * values[3 * a + c];
+      }
+    };
+    failed_element_[index] = element::membrane_forces(
+        foil.membrane, configuration.positions, old_history_[index], new_history_[index], time_step_, with_tangent,
+        foil.energy, [&](const element::ElementBatch& batch) {
+          for (Index e = 0; e < batch.count; ++e) {
+            add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
+            if (with_tangent) {
+              linear::scatter_add(foil.scatter, batch.first + e, batch.tangent + e * size * size, foil.tangent);
+            }
+          }
+        });
+    if (failed_element_[index] >= 0) return;
+
+    geometry::PressureElement<E> p;
+    const auto positions_of = [&](Index e) {
+      geometry::ElementPositions<E> x = geometry::gather<E>(
+          connectivity.subspan(static_cast<std::size_t>(e) * n, static_cast<std::size_t>(n)), configuration.positions);
+      x.colwise() -= origin_;
+      return x;
+    };
+    const auto subtract_load_stiffness = [&](Index e, double pressure) {
+      symmetrize<E>(p);
+      p.derivative *= -pressure;
+      linear::scatter_add(foil.scatter, e, p.derivative.data(), foil.tangent);
+    };
+    const Index elements = foil.membrane.reference.element_count();
+    for (Index e = 0; e < elements; ++e) {
+      const bool stiffness = with_tangent && foil.pressure != 0;
+      geometry::pressure_element<E>(positions_of(e), geometry::pressure_rule(E), stiffness, p);
+      foil.volume += p.volume;
+      add(e, p.force.data(), 1.0, unit);
+      if (stiffness) subtract_load_stiffness(e, foil.pressure);
+    }
+    for (const PressureZone& zone : model_.zones) {
+      if (zone.block != foil.block) continue;
+      const double pressure = at(zone.pressure, configuration.load_factor);
+      for (Index e = 0; e < elements; ++e) {
+        const auto begin = static_cast<std::size_t>(zone.offset[static_cast<std::size_t>(e)]);
+        const auto end = static_cast<std::size_t>(zone.offset[static_cast<std::size_t>(e) + 1]);
+        if (begin == end || pressure == 0) continue;
+        geometry::pressure_element<E>(positions_of(e), std::span(zone.points).subspan(begin, end - begin), with_tangent,
+                                      p);
+        add(e, p.force.data(), pressure, foil.external);
+        if (with_tangent) subtract_load_stiffness(e, pressure);
+      }
+    }
+  });
+  if (failed_element_[index] >= 0) return;
+
+  foil.external += foil.pressure * unit;
+  const auto unknowns = static_cast<Eigen::Index>(foil.coordinate.size());
+  foil.residual.resize(unknowns);
+  foil.pressure_gradient.resize(unknowns);
+  const double lambda = configuration.load_factor;
+  for (Eigen::Index u = 0; u < unknowns; ++u) {
+    const Index k = foil.coordinate[static_cast<std::size_t>(u)];
+    foil.external[k] += (1 - lambda) * model_.dead_from[k] + lambda * model_.dead_to[k];
+    foil.residual[u] = foil.internal[k] - foil.external[k];
+    foil.pressure_gradient[u] = unit[k];
+  }
+}
+
+Balance System::evaluate(Configuration& configuration, bool with_tangent) {
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    double& pressure = configuration.pressures[static_cast<Eigen::Index>(c)];
+    pressure = chamber::prescribed_pressure(model_.chambers[c].gas, pressure, configuration.load_factor);
+  }
+  load_factor_ = configuration.load_factor;
+  base::parallel_chunks(threads_, foils_.size(),
+                        [&](std::size_t i) { evaluate_foil(foils_[i], configuration, with_tangent); });
+
+  Balance balance;
+  for (std::size_t i = 0; i < foils_.size(); ++i) {
+    if (failed_element_[i] >= 0) return {false, "a material point failed"};
+  }
+  double residual = 0;
+  double internal = 0;
+  double external = 0;
+  for (const FoilEquations& foil : foils_) {
+    residual += foil.residual.squaredNorm();
+    for (const Index k : foil.coordinate) {
+      internal += foil.internal[k] * foil.internal[k];
+      external += foil.external[k] * foil.external[k];
+    }
+    external += foil.pressure * foil.pressure * foil.pressure_gradient.squaredNorm();
+  }
+  balance.residual = std::sqrt(residual);
+  balance.force_scale = std::sqrt(std::max(internal, external));
+  if (!std::isfinite(balance.residual)) return {false, "the forces are not finite"};
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    const chamber::GasLine line = gas_line(static_cast<Index>(c), configuration);
+    if (!line.possible) return {false, "a chamber's volume or absolute pressure is not positive"};
+    balance.gas = std::max(balance.gas, std::abs(line.relative));
+  }
+  return balance;
+}
+
+double System::chamber_volume(Index chamber) const {
+  const Chamber& c = model_.chambers[static_cast<std::size_t>(chamber)];
+  const auto below = [&](Index block) {
+    const Index foil = foil_of_block_[static_cast<std::size_t>(block)];
+    return foil < 0 ? base_volume_[static_cast<std::size_t>(block)] : foils_[static_cast<std::size_t>(foil)].volume;
+  };
+  return below(c.outer) - below(c.inner) + c.dead_volume;
+}
+
+chamber::GasLine System::gas_line(Index chamber, const Configuration& configuration) const {
+  return chamber::gas_line(model_.chambers[static_cast<std::size_t>(chamber)].gas, configuration.pressures[chamber],
+                           chamber_volume(chamber), configuration.load_factor);
+}
+
+VecX System::support_forces() const {
+  VecX forces = VecX::Zero(model_.dead_from.size());
+  for (const FoilEquations& foil : foils_) forces += foil.internal - foil.external;
+  for (Eigen::Index k = 0; k < forces.size(); ++k) {
+    if (model_.fixed[static_cast<std::size_t>(k)] == 0) {
+      forces[k] = 0;
+    } else {
+      forces[k] -= (1 - load_factor_) * model_.dead_from[k] + load_factor_ * model_.dead_to[k];
+    }
+  }
+  return forces;
+}
+
+MatX System::dense_load_stiffness(Index foil, const Configuration& configuration) const {
+  const FoilEquations& equations = foils_[static_cast<std::size_t>(foil)];
+  std::vector<Index> unknown(configuration.positions.size() * 3, -1);
+  for (std::size_t u = 0; u < equations.coordinate.size(); ++u) {
+    unknown[static_cast<std::size_t>(equations.coordinate[u])] = static_cast<Index>(u);
+  }
+  MatX stiffness = MatX::Zero(equations.pattern.size, equations.pattern.size);
+  geometry::dispatch(model_.mesh.element, [&]<geometry::ElementType E>() {
+    constexpr int n = geometry::nodes_per_element(E);
+    geometry::PressureElement<E> p;
+    for (Index e = 0; e < equations.membrane.reference.element_count(); ++e) {
+      const std::span<const Index> nodes =
+          equations.membrane.connectivity.subspan(static_cast<std::size_t>(e) * n, static_cast<std::size_t>(n));
+      geometry::pressure_element<E>(geometry::gather<E>(nodes, configuration.positions), geometry::pressure_rule(E),
+                                    true, p);
+      const auto unknown_at = [&](int i) {
+        return unknown[static_cast<std::size_t>(3 * nodes[static_cast<std::size_t>(i / 3)] + i % 3)];
+      };
+      for (int j = 0; j < 3 * n; ++j) {
+        for (int i = 0; i < 3 * n; ++i) {
+          if (unknown_at(i) >= 0 && unknown_at(j) >= 0) stiffness(unknown_at(i), unknown_at(j)) += p.derivative(i, j);
+        }
+      }
+    }
+  });
+  return stiffness;
+}
+
+void System::accept_history() { old_history_.swap(new_history_); }
+
+} // namespace pneuma::solver::assembly

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+
+#include "solver/assembly/model.h"
+#include "solver/linear/cholesky.h"
+
+namespace pneuma::solver::assembly {
+
+using base::MatX;
+
+// Where a path stands.
+struct Configuration {
+  std::vector<Vec3> positions; // m
+  VecX pressures;              // gauge pressure of each chamber, Pa
+  double load_factor = 0;
+};
+
+// Equations of one foil: its own unknowns, one sparse matrix. Foils clamped along their edge share no unknown.
+struct FoilEquations {
+  Index block = 0;
+  element::Membrane membrane;
+  std::vector<Index> coordinate; // [unknown] -> 3 node + component
+  linear::SymmetricPattern pattern;
+  linear::Scatter scatter;
+  std::vector<double> tangent;    // values of the pattern, N/m: internal + pressure (symmetric part) + zones
+  VecX residual;                  // internal - external, free unknowns, N
+  VecX pressure_gradient;         // d volume / d unknown = force of a unit pressure, m2
+  VecX internal, external;        // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
+  double volume = 0;              // below the foil, m3
+  double energy = 0;              // J
+  double pressure = 0;            // net pressure on the whole foil along its normal, Pa
+  std::vector<double> laplacian;  // values of the pattern: int grad N . grad N of the start shape, -
+};
+
+// Sums that tell how far from equilibrium a configuration is.
+struct Balance {
+  bool possible = true;     // false: an element failed, a chamber's volume or absolute pressure is not positive
+  const char* reason = "";  // why not possible
+  double residual = 0;      // |internal - external| of the free unknowns, N
+  double force_scale = 0;   // |external| + |internal| norm to compare with, N
+  double gas = 0;           // largest relative error of a chamber's law
+};
+
+// Residual and tangent of a whole cushion, foil by foil side by side in threads.
+class System {
+public:
+  // Throws InputError where foils share free unknowns (their edges must be held).
+  System(Model model, int threads);
+
+  const Model& model() const { return model_; }
+  std::vector<FoilEquations>& foils() { return foils_; }
+  const std::vector<FoilEquations>& foils() const { return foils_; }
+  Index unknowns() const; // of all foils
+
+  // Sets the regulated pressures for the load factor and evaluates; with_tangent also fills tangents.
+  Balance evaluate(Configuration& configuration, bool with_tangent);
+
+  // Of the last evaluation:
+  double chamber_volume(Index chamber) const; // m3, dead volume included
+  chamber::GasLine gas_line(Index chamber, const Configuration& configuration) const;
+  // Force of the frame on the foils at each held coordinate, [3 node + component], N.
+  VecX support_forces() const;
+
+  // The whole load stiffness d(pressure force)/dx of one foil for a unit pressure, dense over its unknowns: for tests.
+  MatX dense_load_stiffness(Index foil, const Configuration& configuration) const;
+
+  int threads() const { return threads_; }
+  void set_time_step(double seconds) { time_step_ = seconds; }
+  void accept_history(); // new history becomes old
+
+private:
+  void evaluate_foil(FoilEquations& foil, const Configuration& configuration, bool with_tangent);
+  double net_pressure(Index block, const Configuration& configuration) const;
+
+  Model model_;
+  int threads_;
+  double time_step_ = 0;
+  double load_factor_ = 0; // of the last evaluation
+  Vec3 origin_; // of volumes, near the cushion
+  std::vector<FoilEquations> foils_;
+  std::vector<Index> foil_of_block_;                 // -1: base
+  std::vector<double> base_volume_;                  // per block, of those without equations
+  std::vector<std::vector<double>> old_history_, new_history_; // per foil
+  std::vector<Index> failed_element_;                // per foil, -1: none
+};
+
+} // namespace pneuma::solver::assembly

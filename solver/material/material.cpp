@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/material/material.h"
+
+namespace pneuma::solver::material {
+
+int history_components(const Law& law) {
+  return std::visit([]<Material M>(const M&) { return M::history_components; }, law);
+}
+
+double thickness_stretch(const Law& law, const Vec3& strain, const double* history) {
+  return std::visit([&]<Material M>(const M& m) { return m.thickness_stretch(strain, history); }, law);
+}
+
+int evaluate(const Law& law, Batch& batch) {
+  return std::visit(
+      [&batch]<Material M>(const M& m) {
+        for (int i = 0; i < batch.count; ++i) {
+          const auto k = static_cast<std::size_t>(i);
+          const double* old_history = batch.old_history + i * M::history_components;
+          double* new_history = batch.new_history + i * M::history_components;
+          if (m.evaluate(batch.strain[k], old_history, new_history, batch.dt, batch.stress[k], batch.tangent[k],
+                         batch.energy[k]) != Status::ok) {
+            return i;
+          }
+        }
+        return -1;
+      },
+      law);
+}
+
+} // namespace pneuma::solver::material

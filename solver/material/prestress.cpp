@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/material/prestress.h"
+
+#include <cmath>
+#include <vector>
+
+
+namespace pneuma::solver::material {
+
+namespace {
+
+base::Mat2 symmetric(const Vec3& v) {
+  base::Mat2 m;
+  m << v[0], v[2], v[2], v[1];
+  return m;
+}
+
+Vec3 components(const base::Mat2& m) {
+  return {m(0, 0), m(1, 1), 0.5 * (m(0, 1) + m(1, 0))};
+}
+
+} // namespace
+
+Vec3 prestress_of(const Law& law, double thickness, const Vec3& predeformation) {
+  const base::Mat2 g = symmetric(predeformation);
+  const base::Mat2 c = g * g;
+  Batch batch;
+  batch.count = 1;
+  batch.strain[0] = Vec3(0.5 * (c(0, 0) - 1), 0.5 * (c(1, 1) - 1), c(0, 1));
+  std::vector<double> history(static_cast<std::size_t>(2 * history_components(law)), 0.0);
+  batch.old_history = history.data();
+  batch.new_history = history.data() + history_components(law);
+  if (evaluate(law, batch) != -1) return Vec3::Constant(std::nan(""));
+  return components(thickness / g.determinant() * g * symmetric(batch.stress[0]) * g);
+}
+
+std::optional<Vec3> predeformation(const Law& law, double thickness, const Vec3& force) {
+  const double scale = force.cwiseAbs().maxCoeff();
+  Vec3 g(1, 1, 0);
+  if (scale == 0) return g;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    const Vec3 error = prestress_of(law, thickness, g) - force;
+    if (!error.allFinite()) return std::nullopt;
+    if (error.cwiseAbs().maxCoeff() < 1e-14 * scale) return g;
+    Mat3 slope; // three smooth unknowns, once a point: central differences serve, the residual decides
+    constexpr double step = 1e-5;
+    for (int j = 0; j < 3; ++j) {
+      Vec3 forward = g;
+      Vec3 backward = g;
+      forward[j] += step;
+      backward[j] -= step;
+      slope.col(j) = (prestress_of(law, thickness, forward) - prestress_of(law, thickness, backward)) / (2 * step);
+    }
+    const Vec3 change = slope.inverse() * error;
+    if (!change.allFinite()) return std::nullopt;
+    g -= change;
+    if (change.cwiseAbs().maxCoeff() < 1e-16) return g;
+  }
+  const Vec3 error = prestress_of(law, thickness, g) - force;
+  return error.cwiseAbs().maxCoeff() < 1e-11 * scale ? std::optional<Vec3>(g) : std::nullopt;
+}
+
+} // namespace pneuma::solver::material

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <bit>
+#include <csignal>
+#include <limits>
+#include <sys/resource.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/base/errors.h"
+#include "pipeline/digest/digest.h"
+#include "pipeline/state/state_file.h"
+#include "tests/unit/pipeline/state/cushion_state.h"
+#include "tests/unit/pipeline/state/same_state.h"
+#include "tests/unit/pipeline/state/temporary_folder.h"
+
+namespace pneuma::pipeline::state {
+namespace {
+
+using geometry::ElementType;
+using testing::HasSubstr;
+using tests::bytes_of;
+using tests::cushion_state;
+using tests::expect_same;
+using tests::put_bytes;
+using tests::TemporaryFolder;
+
+// What `body` tells its user, and that it ends in `code`.
+template <class Body>
+std::string complaint(base::ExitCode code, Body&& body) {
+  try {
+    body();
+  } catch (const base::Error& error) {
+    EXPECT_EQ(error.code(), code);
+    return error.what();
+  }
+  ADD_FAILURE() << "no complaint";
+  return {};
+}
+
+class StateOfEachElement : public testing::TestWithParam<ElementType> {};
+
+TEST_P(StateOfEachElement, IsReadBackBitForBit) {
+  const TemporaryFolder folder;
+  const State state = cushion_state(GetParam(), 3, 2);
+  write_state(state, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
+TEST_P(StateOfEachElement, GivesEqualBytesWhenWrittenAgain) {
+  const TemporaryFolder folder;
+  write_state(cushion_state(GetParam(), 3, 2), folder / "a.hdf");
+  write_state(read_state(folder / "a.hdf"), folder / "b.hdf");
+  EXPECT_EQ(bytes_of(folder / "a.hdf"), bytes_of(folder / "b.hdf"));
+}
+
+INSTANTIATE_TEST_SUITE_P(StateFile, StateOfEachElement,
+                         testing::Values(ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9),
+                         [](const auto& test) { return std::string(geometry::name_of(test.param)); });
+
+TEST(StateFile, KeepsEveryBitOfOddNumbers) {
+  const TemporaryFolder folder;
+  State state = cushion_state(ElementType::T6, 2, 1);
+  const double nan_with_payload = std::bit_cast<double>(0x7ff0000000abcdefULL); // signalling
+  state.fields[1].values[0] = nan_with_payload;
+  state.fields[1].values[1] = -0.0;
+  state.fields[1].values[2] = std::numeric_limits<double>::denorm_min();
+  state.fields[1].values[3] = -std::numeric_limits<double>::infinity();
+  state.mesh.nodes[0].y() = nan_with_payload;
+  state.provenance.load_factor = nan_with_payload;
+  write_state(state, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
+TEST(StateFile, KeepsLongTextsAndTextsBeyondAscii) {
+  const TemporaryFolder folder;
+  State state = cushion_state(ElementType::T3, 1, 1);
+  state.provenance.settings = std::string(300'000, 'x') + "\ncushion: \u00dcberdruck 250 \u00b5m\t ";
+  state.mesh.blocks[0].name = "\u4e0a";
+  state.fields[0].name = "Kr\u00fcmmung [1\\m]";
+  state.fields[0].unit = "\u00b5m";
+  write_state(state, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
+TEST(StateFile, KeepsAnEmptyState) {
+  const TemporaryFolder folder;
+  write_state(State{}, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), State{});
+}
+
+TEST(StateFile, KeepsAMeshWithoutResultsAndABaseWithoutFoil) {
+  const TemporaryFolder folder;
+  State state = cushion_state(ElementType::Q9, 2, 1);
+  state.stress_rule = geometry::StressRule::reduced;
+  state.mesh.blocks[1].kind = geometry::BlockKind::base;
+  state.foils[0].reference.clear();
+  state.foils[0].predeformation.clear();
+  state.foils[0].prestress.clear();
+  state.foils[0].history.clear();
+  state.foils[1] = {};
+  state.chambers.clear();
+  state.fields.clear();
+  state.provenance = {};
+  write_state(state, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
+TEST(StateFile, HasADigestThatSha256sumUnderstands) {
+  const TemporaryFolder folder;
+  write_state(cushion_state(ElementType::T3, 1, 1), folder / "a.hdf");
+  EXPECT_EQ(bytes_of(folder / "a.hdf.sha256"), digest::sha256_of_file(folder / "a.hdf") + "  a.hdf\n");
+}
+
+TEST(StateFile, IsReadWithoutItsDigestToo) {
+  const TemporaryFolder folder;
+  const State state = cushion_state(ElementType::T6, 2, 2);
+  write_state(state, folder / "a.hdf");
+  std::filesystem::remove(folder / "a.hdf.sha256");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
+TEST(StateFile, LeavesNothingElseInTheFolder) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 2; ++i) write_state(cushion_state(ElementType::T3, 1, 1), folder / "a.hdf");
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
+  EXPECT_EQ(files, 2);
+}
+
+TEST(StateFile, WithAWrongDigestCountsAsNotDone) {
+  const TemporaryFolder folder;
+  write_state(cushion_state(ElementType::T3, 1, 1), folder / "a.hdf");
+  const std::string digest = bytes_of(folder / "a.hdf.sha256");
+  write_state(cushion_state(ElementType::T3, 2, 1), folder / "a.hdf");
+  for (const std::string& other : {digest, digest.substr(0, 20), std::string()}) {
+    put_bytes(folder / "a.hdf.sha256", other);
+    const std::string text = complaint(base::ExitCode::bad_state, [&] { read_state(folder / "a.hdf"); });
+    EXPECT_THAT(text, HasSubstr((folder / "a.hdf").string()));
+    EXPECT_THAT(text, HasSubstr("does not match its digest"));
+    EXPECT_THAT(text, HasSubstr("run the stage"));
+  }
+}
+
+TEST(StateFile, OnAFullDiskKeepsTheOldPair) {
+  const TemporaryFolder folder;
+  const State old = cushion_state(ElementType::T3, 1, 1);
+  write_state(old, folder / "a.hdf");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 10'000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string text = complaint(base::ExitCode::bad_state,
+                                     [&] { write_state(cushion_state(ElementType::T6, 8, 8), folder / "a.hdf"); });
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(text, HasSubstr((folder / "a.hdf").string()));
+  EXPECT_THAT(text, HasSubstr("File too large"));
+  expect_same(read_state(folder / "a.hdf"), old);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.hdf.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.hdf.sha256.tmp"));
+}
+
+TEST(StateFile, CannotBeWrittenWhereThereIsNoFolder) {
+  const TemporaryFolder folder;
+  const std::string text = complaint(base::ExitCode::bad_state, [&] { write_state(State{}, folder / "none/a.hdf"); });
+  EXPECT_THAT(text, HasSubstr("No such file or directory"));
+}
+
+TEST(StateFile, RefusesToReplaceAFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "a.hdf");
+  const std::string text = complaint(base::ExitCode::bad_state, [&] { write_state(State{}, folder / "a.hdf"); });
+  EXPECT_THAT(text, HasSubstr("is a folder"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.hdf.sha256"));
+}
+
+struct Wrong {
+  const char* name;
+  void (*spoil)(State&);
+  const char* complaint;
+};
+
+class WrongState : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongState, IsNotWritten) {
+  const TemporaryFolder folder;
+  State state = cushion_state(ElementType::T6, 2, 2);
+  GetParam().spoil(state);
+  const std::string text = complaint(base::ExitCode::bug, [&] { write_state(state, folder / "a.hdf"); });
+  EXPECT_THAT(text, HasSubstr(GetParam().complaint));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.hdf"));
+}
+
+const Wrong wrong_states[] = {
+    {"NodeOutOfRange", [](State& s) { s.mesh.blocks[1].connectivity[3] = 1000; }, "block lower names node 1000"},
+    {"NegativeNode", [](State& s) { s.mesh.edges[0].nodes[1] = -1; }, "edge south names node -1"},
+    {"HalfAnElement", [](State& s) { s.mesh.blocks[0].connectivity.pop_back(); }, "no whole number of T6 elements"},
+    {"FoilMissing", [](State& s) { s.foils.pop_back(); }, "1 foils for 2 blocks"},
+    {"MarksMissing", [](State& s) { s.fixed.clear(); }, "marks of held coordinates"},
+    {"ShortHistory", [](State& s) { s.foils[0].history.pop_back(); },
+     "foil upper: history has 47 values instead of 48"},
+    {"ShortField", [](State& s) { s.fields[0].values.pop_back(); }, "field displacement has"},
+    {"SameName",
+     [](State& s) {
+       s.fields[4].name = "displacement";
+       s.fields[4] = s.fields[0];
+     },
+     "two fields"},
+    {"SlashInName", [](State& s) { s.fields[0].name = "a/b"; }, "cannot be called 'a/b'"},
+    {"TakenName", [](State& s) { s.fields[1].name = "foil"; }, "written by the state itself"},
+    {"NoUnit", [](State& s) { s.fields[0].unit = ""; }, "has no unit"},
+    {"ChamberWithoutWall", [](State& s) { s.chambers[0].inner = 2; }, "chamber main names block 2"},
+    {"ReducedRule", [](State& s) { s.stress_rule = geometry::StressRule::reduced; }, "exists for Q9"},
+    {"NulInText", [](State& s) { s.provenance.verdict = std::string("a\0b", 3); }, "NUL"},
+};
+INSTANTIATE_TEST_SUITE_P(StateFile, WrongState, testing::ValuesIn(wrong_states),
+                         [](const auto& test) { return test.param.name; });
+
+} // namespace
+} // namespace pneuma::pipeline::state
