@@ -162,9 +162,19 @@ std::vector<Vec3> drawn_positions(const State& state, double warp) {
   throw InputError("--warp needs the point field `displacement`, which the state does not have");
 }
 
+// Quadratic elements are divided more finely the fewer they are.
+int divisions_for(const geometry::Mesh& mesh) {
+  if (!geometry::is_quadratic(mesh.element)) return 1;
+  constexpr double enough = 100'000; // parts in all
+  double elements = 1;
+  for (const geometry::Block& block : mesh.blocks) elements += mesh.element_count(block);
+  return std::clamp(static_cast<int>(std::sqrt(enough / elements)), 2, 6);
+}
+
 std::vector<Surface> surfaces_of(const State& state, const Shown& what, const Options& options) {
   const geometry::Mesh& mesh = state.mesh;
   const std::vector<Vec3> positions = drawn_positions(state, options.warp);
+  const int divisions = divisions_for(mesh);
   std::vector<Surface> surfaces;
   auto next = what.values.begin();
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
@@ -177,8 +187,8 @@ std::vector<Surface> surfaces_of(const State& state, const Shown& what, const Op
       next = end;
     }
     const bool at_nodes = what.location == Location::point;
-    surfaces.push_back(
-        surface_of(mesh, mesh.blocks[b], lifted, at_nodes ? what.values : std::vector<double>{}, of_elements));
+    surfaces.push_back(surface_of(mesh, mesh.blocks[b], lifted, at_nodes ? what.values : std::vector<double>{},
+                                  of_elements, divisions));
   }
   return surfaces;
 }
@@ -450,11 +460,12 @@ void draw(const State& state, const Options& options) {
 
   const vtkNew<vtkColorTransferFunction> map = viridis(what.low, what.high);
   const double line = std::max(1.0, options.height / 900.0);
-  const double opacity = std::clamp(mean_edge_pixels(surfaces, eye.pixels_per_metre) / 60, 0.08, 0.5);
+  const double edge = mean_edge_pixels(surfaces, eye.pixels_per_metre);
+  const double opacity = edge < 4 ? 0 : std::clamp(edge / 60, 0.1, 0.5);
   const Vec3 nearer = eye.direction * 2 / eye.pixels_per_metre;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     add_foil(renderer, surfaces[i], has_scale ? map.Get() : nullptr, i);
-    add_lines(renderer, surfaces[i].edges, nearer, line, opacity);
+    if (opacity > 0) add_lines(renderer, surfaces[i].edges, nearer, line, opacity);
     add_lines(renderer, surfaces[i].borders, nearer, 2 * line, 1);
   }
   if (has_scale) add_scale(renderer, what, map, options);

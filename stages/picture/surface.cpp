@@ -16,10 +16,6 @@ namespace {
 using base::Vec2;
 using geometry::ElementType;
 
-constexpr int divisions_of(ElementType type) {
-  return geometry::is_quadratic(type) ? 6 : 1;
-}
-
 // Corners and mid-sides in the reference element.
 template <ElementType E>
 Vec2 node_place(int k) {
@@ -41,11 +37,10 @@ struct Division {
 };
 
 template <ElementType E>
-Division divide() {
-  constexpr int n = divisions_of(E);
+Division divide(int n) {
   Division division;
   if constexpr (geometry::corners_per_element(E) == 3) {
-    const auto number = [](int i, int j) { return static_cast<Index>(j * (n + 1) - j * (j - 1) / 2 + i); };
+    const auto number = [n](int i, int j) { return static_cast<Index>(j * (n + 1) - j * (j - 1) / 2 + i); };
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n - j; ++i) {
         division.places.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n);
@@ -54,7 +49,7 @@ Division divide() {
       }
     }
   } else {
-    const auto number = [](int i, int j) { return static_cast<Index>(j * (n + 1) + i); };
+    const auto number = [n](int i, int j) { return static_cast<Index>(j * (n + 1) + i); };
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         division.places.emplace_back(2.0 * i / n - 1, 2.0 * j / n - 1);
@@ -97,7 +92,7 @@ std::vector<Vec3> node_normals(const geometry::Mesh& mesh, const geometry::Block
 }
 
 template <ElementType E>
-void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
+void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions, int n,
                Surface& surface) {
   constexpr int corners = geometry::corners_per_element(E);
   struct Side {
@@ -114,8 +109,8 @@ void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const s
       if (++side.elements > 1) continue;
       const Vec2 from = node_place<E>(k);
       const Vec2 to = node_place<E>(next);
-      for (int i = 0; i <= divisions_of(E); ++i) {
-        const Vec2 place = from + (to - from) * i / divisions_of(E);
+      for (int i = 0; i <= n; ++i) {
+        const Vec2 place = from + (to - from) * i / n;
         const auto shape = geometry::shape_functions<E>(place.x(), place.y());
         Vec3 point(0, 0, 0);
         for (int j = 0; j < geometry::nodes_per_element(E); ++j) {
@@ -132,8 +127,8 @@ void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const s
 
 template <ElementType E>
 Surface make_surface(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                     const std::vector<double>& node_values, const std::vector<double>& element_values) {
-  const Division division = divide<E>();
+                     const std::vector<double>& node_values, const std::vector<double>& element_values, int n) {
+  const Division division = divide<E>(n);
   const std::vector<Vec3> normals = node_normals<E>(mesh, block, positions);
   Surface surface;
   for (Index e = 0; e < mesh.element_count(block); ++e) {
@@ -157,16 +152,16 @@ Surface make_surface(const geometry::Mesh& mesh, const geometry::Block& block, c
     }
     for (const auto& [a, b, c] : division.triangles) surface.triangles.push_back({first + a, first + b, first + c});
   }
-  add_edges<E>(mesh, block, positions, surface);
+  add_edges<E>(mesh, block, positions, n, surface);
   return surface;
 }
 
 } // namespace
 
 Surface surface_of(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                   const std::vector<double>& node_values, const std::vector<double>& element_values) {
+                   const std::vector<double>& node_values, const std::vector<double>& element_values, int divisions) {
   return geometry::dispatch(mesh.element, [&]<ElementType E>() {
-    return make_surface<E>(mesh, block, positions, node_values, element_values);
+    return make_surface<E>(mesh, block, positions, node_values, element_values, divisions);
   });
 }
 

@@ -24,6 +24,6 @@ struct Surface {
 // Quadratic elements are divided by their own shape functions. `positions`: [node]; `values`: [node], or [element of
 // this block] (each element then has one colour), or empty.
 Surface surface_of(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                   const std::vector<double>& node_values, const std::vector<double>& element_values);
+                   const std::vector<double>& node_values, const std::vector<double>& element_values, int divisions);
 
 } // namespace pneuma::stages::picture
