@@ -22,10 +22,9 @@ struct FittedCurvature {
 
 // Fits a polynomial to the nodes of the two rings of elements around each node of a block (three where they have few
 // nodes), by weighted least squares in the frame of the tangent plane: of degree four where the points suffice, else
-// three or two. Knows neither shape
-// functions nor forces, so that it can judge what a finite-element computation found. On smooth surfaces the error
-// falls with the third power of the element size; on a sphere of radius 2 m, with elements of 0.1 m, it is below 1e-4.
-// Indexed by node; positions of all nodes of the mesh in m.
+// three or two. Knows neither shape functions nor forces, so that it can judge what a finite-element computation found.
+// On smooth surfaces the error falls with the third power of the element size; on a sphere of radius 2 m, with elements
+// of 0.1 m, it is below 1e-4 / m. Indexed by node; positions of all nodes of the mesh in m.
 std::vector<FittedCurvature> fitted_curvatures(const Mesh& mesh, const Block& block, std::span<const Vec3> positions);
 
 } // namespace pneuma::geometry

@@ -60,7 +60,7 @@ TEST_P(CheckOfEveryElement, FindsNumbersOutsideTheMesh) {
   mesh.edges[2].nodes[1] = -1;
   EXPECT_TRUE(has(check_mesh(mesh), FaultKind::bad_number));
   mesh = good(GetParam());
-  upper.pop_back();
+  mesh.blocks[0].connectivity.pop_back();
   EXPECT_TRUE(has(check_mesh(mesh), FaultKind::bad_number));
   mesh = good(GetParam());
   mesh.nodes[4].y() = std::numeric_limits<double>::quiet_NaN();
