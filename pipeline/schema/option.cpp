@@ -275,7 +275,7 @@ public:
     case Type::text:
       break;
     case Type::name:
-      read_name(node, path, value);
+      check_name(node.text, node.mark, value);
       break;
     case Type::flag:
       read_flag(node, path, value);
@@ -329,8 +329,6 @@ private:
     fail(mark, fmt::format("`{}` is no name: letters, digits, _ and - are allowed", name));
     value.valid = false;
   }
-
-  void read_name(const Node& node, const std::string&, Value& value) { check_name(node.text, node.mark, value); }
 
   void read_flag(const Node& node, const std::string& path, Value& value) {
     value.flag = node.text == "on" || node.text == "true" || node.text == "yes";
