@@ -46,7 +46,8 @@ double Newton::reference_tension(const Configuration& configuration) const {
   }
   double tension = 0;
   for (const assembly::FoilEquations& foil : system_.foils()) {
-    const double area = std::max(foil.pressure_gradient.norm() * std::sqrt(static_cast<double>(foil.pattern.size)), 1e-300);
+    const double area =
+        std::max(foil.pressure_gradient.norm() * std::sqrt(static_cast<double>(foil.pattern.size)), 1e-300);
     const double load = foil.external.norm() * std::sqrt(static_cast<double>(foil.pattern.size)) / area;
     tension = std::max(tension, 0.1 * load * (high - low).norm());
   }
@@ -108,27 +109,26 @@ Newton::Direction Newton::direction(const Configuration& configuration) {
     solution[i] = factors_[i].solve(right);
   });
 
-  // (D + Q^T K^-1 Q) dp = -r + Q^T K^-1 R; a prescribed pressure has the line dp = 0
+  // (D + Q^T K^-1 Q) dp = -r + Q^T K^-1 R over the chambers with unknown pressure, scaled to a diagonal of one:
+  // chambers of any size stand side by side
   MatX small = MatX::Zero(chambers, chambers);
   VecX right = VecX::Zero(chambers);
   for (std::size_t i = 0; i < count; ++i) {
     small += q[i].transpose() * solution[i].rightCols(chambers);
     right += q[i].transpose() * solution[i].col(0);
   }
+  VecX scale = VecX::Zero(chambers); // 0 where the pressure is prescribed: dp = 0
   for (Eigen::Index c = 0; c < chambers; ++c) {
     const chamber::GasLine line = system_.gas_line(static_cast<Index>(c), configuration);
-    if (line.pressure_is_unknown) {
-      small(c, c) += line.compliance;
-      right[c] -= line.residual;
-    } else {
-      small.row(c).setZero();
-      small.col(c).setZero();
-      small(c, c) = 1;
-      right[c] = 0;
-    }
+    if (!line.pressure_is_unknown) continue;
+    small(c, c) += line.compliance;
+    right[c] -= line.residual;
+    scale[c] = small(c, c) > 0 ? 1 / std::sqrt(small(c, c)) : 0.0;
   }
+  small = (scale.asDiagonal() * small * scale.asDiagonal()).eval();
+  for (Eigen::Index c = 0; c < chambers; ++c) small(c, c) = 1;
   Direction result;
-  result.dp = chambers > 0 ? VecX(small.fullPivLu().solve(right)) : VecX();
+  result.dp = chambers > 0 ? VecX(scale.cwiseProduct(small.fullPivLu().solve(scale.cwiseProduct(right)))) : VecX();
   for (std::size_t i = 0; i < count; ++i) {
     result.du.emplace_back(-solution[i].col(0) + solution[i].rightCols(chambers) * result.dp);
     result.shift = std::max(result.shift, shift_[i]);
@@ -160,9 +160,7 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     const Stopwatch watch(work_.assembly);
     return system_.evaluate(at, with_tangent);
   };
-  const auto relative = [](const assembly::Balance& b) {
-    return b.residual == 0 ? 0.0 : b.residual / b.force_scale;
-  };
+  const auto relative = [](const assembly::Balance& b) { return b.residual == 0 ? 0.0 : b.residual / b.force_scale; };
   double span = 0;
   for (const Vec3& x : configuration.positions) span = std::max(span, (x - configuration.positions.front()).norm());
 
