@@ -37,7 +37,8 @@ Newton::Newton(System& system, NewtonOptions options) : system_(system), options
 }
 
 double Newton::reference_tension(const Configuration& configuration) const {
-  // A film that carries the load with a sag of the order of its span has a tension of load per area x span.
+  // A film that carries the load with a sag of the order of its span has a tension of load per area x span. What is not
+  // in balance counts as a load: a slack foil between moved edges has no other.
   Vec3 low = configuration.positions.front();
   Vec3 high = low;
   for (const Vec3& x : configuration.positions) {
@@ -48,8 +49,15 @@ double Newton::reference_tension(const Configuration& configuration) const {
   for (const assembly::FoilEquations& foil : system_.foils()) {
     const double area =
         std::max(foil.pressure_gradient.norm() * std::sqrt(static_cast<double>(foil.pattern.size)), 1e-300);
-    const double load = foil.external.norm() * std::sqrt(static_cast<double>(foil.pattern.size)) / area;
+    const double load =
+        std::max(foil.external.norm(), foil.residual.norm()) * std::sqrt(static_cast<double>(foil.pattern.size)) / area;
     tension = std::max(tension, 0.1 * load * (high - low).norm());
+  }
+  if (tension > 0) return tension;
+  // No force at all, yet a tangent to be made positive (a flat chamber is to get a volume): any small tension serves.
+  for (const assembly::FoilEquations& foil : system_.foils()) {
+    if (foil.pattern.size == 0) continue;
+    tension = std::max(tension, 1e-6 * foil.stiffness / std::sqrt(static_cast<double>(foil.pattern.size)));
   }
   return tension;
 }
@@ -171,12 +179,14 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     outcome.reason = balance.reason;
     return outcome;
   }
-  double last_move = span; // largest displacement of the last iteration
+  double last_move = span; // largest displacement of the last iteration's whole step, if no artificial tension acted
   for (int number = 0;; ++number) {
     outcome.iterations = number;
     outcome.residual = relative(balance);
-    // on very fine meshes rounding keeps the residual above the tolerance: then a move at rounding level decides
-    const bool at_rounding = last_move < 1e-13 * span && outcome.residual < 1e3 * options_.tolerance;
+    // Where nothing acts (forces that cancel, moved edges, far from the origin, very fine meshes) rounding keeps the
+    // relative residual above the tolerance: then the residual, or a move, at rounding level decides.
+    const bool at_rounding = balance.residual <= balance.rounding ||
+                             (last_move < 1e-13 * span && outcome.residual < 1e3 * options_.tolerance);
     if ((outcome.residual <= options_.tolerance || at_rounding) && balance.gas <= options_.tolerance) {
       outcome.converged = true;
       return outcome;
@@ -199,6 +209,7 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     double slope1 = next.possible ? slope(step) : 0;
     const auto good = [&] {
       if (!next.possible) return false;
+      if (slope0 >= 0) return true; // the step serves a gas law first: along it the residual is no measure
       if (std::abs(slope1) <= 0.8 * std::abs(slope0)) return true;
       return step.shift == 0 && relative(next) < 0.5 * relative(balance);
     };
@@ -243,9 +254,9 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
       outcome.reason = next.reason;
       return outcome;
     }
-    last_move = 0;
+    last_move = step.shift > 0 ? span : 0;
     for (const VecX& du : step.du) {
-      if (du.size() > 0) last_move = std::max(last_move, length * du.cwiseAbs().maxCoeff());
+      if (du.size() > 0) last_move = std::max(last_move, du.cwiseAbs().maxCoeff());
     }
     configuration = std::move(trial);
     balance = next;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 #include <variant>
@@ -34,7 +35,8 @@ struct Cushion {
   double prestress = 0;                     // N/m at the given shape (predeformation); 0: free of stress there
   std::vector<double> thickness{250e-6};    // m, one for all or one a foil
   solver::material::StVenantKirchhoff law{900e6, 0.45};
-  Vec3 place = Vec3::Zero(); // m, of the plan's centre
+  Vec3 place = Vec3::Zero();               // m, of the plan's centre
+  std::function<void(Vec3&)> distort = {}; // moves the plan's nodes before anything else; edges onto themselves
 };
 
 // 1 in the middle of the plan, 0 on its edge
@@ -52,7 +54,10 @@ inline double shape_over(const geometry::Plan& plan, const Vec3& x) {
 inline solver::assembly::Model model_of(const Cushion& cushion, double pressure) {
   using namespace solver;
   assembly::Model model;
-  const geometry::Mesh plan = geometry::meshing::mesh_plan(cushion.plan, {cushion.element, {}, cushion.divisions});
+  geometry::Mesh plan = geometry::meshing::mesh_plan(cushion.plan, {cushion.element, {}, cushion.divisions});
+  if (cushion.distort) {
+    for (Vec3& x : plan.nodes) cushion.distort(x);
+  }
   std::vector<geometry::meshing::Layer> layers;
   for (std::size_t b = 0; b < cushion.heights.size(); ++b) layers.push_back({"foil " + std::to_string(b + 1)});
   if (cushion.base) layers.push_back({"base", geometry::BlockKind::base});
