@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -15,8 +16,7 @@ namespace pneuma::solver::assembly {
 
 namespace {
 
-// Adds what a follower pressure does to a foil's external force and, if asked for, subtracts its load stiffness.
-// Upper triangle of the symmetric part only: that is what the scatter reads.
+// The symmetric part of a load stiffness: that is what the tangent takes (numerics 2).
 template <geometry::ElementType E>
 void symmetrize(geometry::PressureElement<E>& p) {
   p.derivative = (0.5 * (p.derivative + p.derivative.transpose())).eval();
@@ -73,10 +73,9 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
     foil.laplacian.assign(foil.pattern.row.size(), 0.0);
     const element::Film film{mesh.element, data.reference.rule, block.connectivity, 1.0};
     double area = 0;
-    const Index degenerate =
-        element::film_forces(film, mesh.nodes, 0.0, area, [&](const element::ElementBatch& batch) {
-          linear::scatter_add(foil.scatter, batch.first, batch.tangent, foil.laplacian);
-        });
+    const Index degenerate = element::film_forces(film, mesh.nodes, 0.0, area, [&](const element::ElementBatch& batch) {
+      linear::scatter_add(foil.scatter, batch.first, batch.tangent, foil.laplacian);
+    });
     if (degenerate >= 0) {
       throw base::GeometryError(fmt::format("element {} of foil `{}` has no area", degenerate, block.name));
     }
@@ -178,6 +177,14 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
   });
   if (failed_element_[index] >= 0) return;
 
+  if (with_tangent) {
+    double sum = 0;
+    for (std::size_t u = 0; u < foil.coordinate.size(); ++u) { // the diagonal ends each column
+      const double k = foil.tangent[static_cast<std::size_t>(foil.pattern.column_start[u + 1]) - 1];
+      sum += k * k;
+    }
+    foil.stiffness = std::sqrt(sum);
+  }
   foil.external += foil.pressure * unit;
   const auto unknowns = static_cast<Eigen::Index>(foil.coordinate.size());
   foil.residual.resize(unknowns);
@@ -215,12 +222,17 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
     }
     external += foil.pressure * foil.pressure * foil.pressure_gradient.squaredNorm();
   }
+  double largest = 0; // coordinate
+  for (const Vec3& x : configuration.positions) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  for (const FoilEquations& foil : foils_) balance.rounding = std::hypot(balance.rounding, foil.stiffness);
+  balance.rounding *= std::numeric_limits<double>::epsilon() * largest;
   balance.residual = std::sqrt(residual);
   balance.force_scale = std::sqrt(std::max(internal, external));
   if (!std::isfinite(balance.residual)) return {false, "the forces are not finite"};
   for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
     const chamber::GasLine line = gas_line(static_cast<Index>(c), configuration);
     if (!line.possible) return {false, "a chamber's volume or absolute pressure is not positive"};
+    if (!std::isfinite(line.relative)) return {false, "a chamber's law is not finite"}; // std::max would drop a NaN
     balance.gas = std::max(balance.gas, std::abs(line.relative));
   }
   return balance;
@@ -281,6 +293,8 @@ MatX System::dense_load_stiffness(Index foil, const Configuration& configuration
   return stiffness;
 }
 
-void System::accept_history() { old_history_.swap(new_history_); }
+void System::accept_history() {
+  old_history_.swap(new_history_);
+}
 
 } // namespace pneuma::solver::assembly

@@ -30,6 +30,7 @@ struct FoilEquations {
   VecX internal, external;        // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
   double volume = 0;              // below the foil, m3
   double energy = 0;              // J
+  double stiffness = 0;           // norm of the last tangent's diagonal, N/m
   double pressure = 0;            // net pressure on the whole foil along its normal, Pa
   std::vector<double> laplacian;  // values of the pattern: int grad N . grad N of the start shape, -
 };
@@ -39,7 +40,8 @@ struct Balance {
   bool possible = true;     // false: an element failed, a chamber's volume or absolute pressure is not positive
   const char* reason = "";  // why not possible
   double residual = 0;      // |internal - external| of the free unknowns, N
-  double force_scale = 0;   // |external| + |internal| norm to compare with, N
+  double force_scale = 0;   // the larger of |external| and |internal|, N; 0 where nothing acts on the free unknowns
+  double rounding = 0;      // residual that a change of all positions in their last digit makes, N (needs a tangent)
   double gas = 0;           // largest relative error of a chamber's law
 };
 
@@ -48,6 +50,8 @@ class System {
 public:
   // Throws InputError where foils share free unknowns (their edges must be held).
   System(Model model, int threads);
+  System(System&&) = default; // the foils look into the model
+  System(const System&) = delete;
 
   const Model& model() const { return model_; }
   std::vector<FoilEquations>& foils() { return foils_; }

@@ -23,7 +23,7 @@ struct Closed {
   double ambient_from = 0, ambient_to = 0;  // Pa, absolute
 };
 
-// The volume is prescribed; the pressure follows.
+// The volume is prescribed; the pressure follows. From 0 (a flat chamber) or more, to more than 0.
 struct PrescribedVolume {
   double from = 0, to = 0; // m3
 };
@@ -36,7 +36,7 @@ struct GasLine {
   double residual = 0;   // m3
   double compliance = 0; // -dV/dp of the gas alone, m3/Pa, >= 0
   double relative = 0;   // residual as a relative error of absolute pressure or volume, -
-  bool possible = true;  // false: volume or absolute pressure not positive, reject the step
+  bool possible = true;  // false: closed air without volume, pressure or temperature, or a volume of 0 is the goal
 };
 
 // At gauge pressure p, volume V and load factor. Closed air as ln p + kappa ln V = const, so that V -> 0 cannot overflow.

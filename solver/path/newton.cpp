@@ -37,7 +37,8 @@ Newton::Newton(System& system, NewtonOptions options) : system_(system), options
 }
 
 double Newton::reference_tension(const Configuration& configuration) const {
-  // A film that carries the load with a sag of the order of its span has a tension of load per area x span.
+  // A film that carries the load with a sag of the order of its span has a tension of load per area x span. What is not
+  // in balance counts as a load: a slack foil between moved edges has no other.
   Vec3 low = configuration.positions.front();
   Vec3 high = low;
   for (const Vec3& x : configuration.positions) {
@@ -46,9 +47,17 @@ double Newton::reference_tension(const Configuration& configuration) const {
   }
   double tension = 0;
   for (const assembly::FoilEquations& foil : system_.foils()) {
-    const double area = std::max(foil.pressure_gradient.norm() * std::sqrt(static_cast<double>(foil.pattern.size)), 1e-300);
-    const double load = foil.external.norm() * std::sqrt(static_cast<double>(foil.pattern.size)) / area;
+    const double area =
+        std::max(foil.pressure_gradient.norm() * std::sqrt(static_cast<double>(foil.pattern.size)), 1e-300);
+    const double load =
+        std::max(foil.external.norm(), foil.residual.norm()) * std::sqrt(static_cast<double>(foil.pattern.size)) / area;
     tension = std::max(tension, 0.1 * load * (high - low).norm());
+  }
+  if (tension > 0) return tension;
+  // No force at all, yet a tangent to be made positive (a flat chamber is to get a volume): any small tension serves.
+  for (const assembly::FoilEquations& foil : system_.foils()) {
+    if (foil.pattern.size == 0) continue;
+    tension = std::max(tension, 1e-6 * foil.stiffness / std::sqrt(static_cast<double>(foil.pattern.size)));
   }
   return tension;
 }
@@ -108,27 +117,26 @@ Newton::Direction Newton::direction(const Configuration& configuration) {
     solution[i] = factors_[i].solve(right);
   });
 
-  // (D + Q^T K^-1 Q) dp = -r + Q^T K^-1 R; a prescribed pressure has the line dp = 0
+  // (D + Q^T K^-1 Q) dp = -r + Q^T K^-1 R over the chambers with unknown pressure, scaled to a diagonal of one:
+  // chambers of any size stand side by side
   MatX small = MatX::Zero(chambers, chambers);
   VecX right = VecX::Zero(chambers);
   for (std::size_t i = 0; i < count; ++i) {
     small += q[i].transpose() * solution[i].rightCols(chambers);
     right += q[i].transpose() * solution[i].col(0);
   }
+  VecX scale = VecX::Zero(chambers); // 0 where the pressure is prescribed: dp = 0
   for (Eigen::Index c = 0; c < chambers; ++c) {
     const chamber::GasLine line = system_.gas_line(static_cast<Index>(c), configuration);
-    if (line.pressure_is_unknown) {
-      small(c, c) += line.compliance;
-      right[c] -= line.residual;
-    } else {
-      small.row(c).setZero();
-      small.col(c).setZero();
-      small(c, c) = 1;
-      right[c] = 0;
-    }
+    if (!line.pressure_is_unknown) continue;
+    small(c, c) += line.compliance;
+    right[c] -= line.residual;
+    scale[c] = small(c, c) > 0 ? 1 / std::sqrt(small(c, c)) : 0.0;
   }
+  small = (scale.asDiagonal() * small * scale.asDiagonal()).eval();
+  for (Eigen::Index c = 0; c < chambers; ++c) small(c, c) = 1;
   Direction result;
-  result.dp = chambers > 0 ? VecX(small.fullPivLu().solve(right)) : VecX();
+  result.dp = chambers > 0 ? VecX(scale.cwiseProduct(small.fullPivLu().solve(scale.cwiseProduct(right)))) : VecX();
   for (std::size_t i = 0; i < count; ++i) {
     result.du.emplace_back(-solution[i].col(0) + solution[i].rightCols(chambers) * result.dp);
     result.shift = std::max(result.shift, shift_[i]);
@@ -160,9 +168,7 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     const Stopwatch watch(work_.assembly);
     return system_.evaluate(at, with_tangent);
   };
-  const auto relative = [](const assembly::Balance& b) {
-    return b.residual == 0 ? 0.0 : b.residual / b.force_scale;
-  };
+  const auto relative = [](const assembly::Balance& b) { return b.residual == 0 ? 0.0 : b.residual / b.force_scale; };
   double span = 0;
   for (const Vec3& x : configuration.positions) span = std::max(span, (x - configuration.positions.front()).norm());
 
@@ -173,12 +179,14 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     outcome.reason = balance.reason;
     return outcome;
   }
-  double last_move = span; // largest displacement of the last iteration
+  double last_move = span; // largest displacement of the last iteration's whole step, if no artificial tension acted
   for (int number = 0;; ++number) {
     outcome.iterations = number;
     outcome.residual = relative(balance);
-    // on very fine meshes rounding keeps the residual above the tolerance: then a move at rounding level decides
-    const bool at_rounding = last_move < 1e-13 * span && outcome.residual < 1e3 * options_.tolerance;
+    // Where nothing acts (forces that cancel, moved edges, far from the origin, very fine meshes) rounding keeps the
+    // relative residual above the tolerance: then the residual, or a move, at rounding level decides.
+    const bool at_rounding = balance.residual <= balance.rounding ||
+                             (last_move < 1e-13 * span && outcome.residual < 1e3 * options_.tolerance);
     if ((outcome.residual <= options_.tolerance || at_rounding) && balance.gas <= options_.tolerance) {
       outcome.converged = true;
       return outcome;
@@ -201,6 +209,7 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     double slope1 = next.possible ? slope(step) : 0;
     const auto good = [&] {
       if (!next.possible) return false;
+      if (slope0 >= 0) return true; // the step serves a gas law first: along it the residual is no measure
       if (std::abs(slope1) <= 0.8 * std::abs(slope0)) return true;
       return step.shift == 0 && relative(next) < 0.5 * relative(balance);
     };
@@ -245,9 +254,9 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
       outcome.reason = next.reason;
       return outcome;
     }
-    last_move = 0;
+    last_move = step.shift > 0 ? span : 0;
     for (const VecX& du : step.du) {
-      if (du.size() > 0) last_move = std::max(last_move, length * du.cwiseAbs().maxCoeff());
+      if (du.size() > 0) last_move = std::max(last_move, du.cwiseAbs().maxCoeff());
     }
     configuration = std::move(trial);
     balance = next;
