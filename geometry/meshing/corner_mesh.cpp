@@ -43,8 +43,8 @@ std::vector<Side> rim_to_rim(const CornerMesh& mesh, const std::vector<bool>& ri
 
 std::vector<bool> on_rim(const CornerMesh& mesh) {
   std::vector<bool> rim(mesh.points.size(), false);
-  for (const Edge& edge : mesh.edges) {
-    for (const Index node : edge.nodes) rim[static_cast<std::size_t>(node)] = true;
+  for (const std::vector<Index>& edge : mesh.edges) {
+    for (const Index node : edge) rim[static_cast<std::size_t>(node)] = true;
   }
   return rim;
 }

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string>
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "geometry/base/types.h"
 #include "geometry/mesh.h"
+#include "geometry/polygon.h"
 
 namespace pneuma::geometry::meshing {
 
 using base::Vec2;
 
-inline double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
+// One number for a side, from either end.
+inline std::uint64_t side_key(Index a, Index b) {
+  const auto [low, high] = std::minmax(a, b);
+  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
 }
 
 // A mesh of a plan reduced to its corners: what the meshers make, and what mesh_plan completes with mid-side nodes.
@@ -20,7 +24,9 @@ struct CornerMesh {
   int corners = 3; // per cell: 3 or 4, counterclockwise
   std::vector<Vec2> points;
   std::vector<Index> cells; // [cell][corner]
-  std::vector<Edge> edges;  // corners only, counterclockwise around the plan
+  // points on each edge of the plan, counterclockwise, both ends included; a single edge is closed, without a repeated
+  // end
+  std::vector<std::vector<Index>> edges;
 
   std::size_t cell_count() const { return cells.size() / static_cast<std::size_t>(corners); }
 };

@@ -56,7 +56,7 @@ std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options) {
     const bool triangles = corners_per_element(options.element) == 3;
     const bool circle = std::holds_alternative<Circle>(plan);
     const bool grid = options.pattern == Pattern::structured && !std::holds_alternative<Triangle>(plan);
-    const bool even = triangles == grid;
+    const bool even = grid || !triangles;
     for (std::size_t k = 0; k < 2; ++k) {
       const double wanted = std::ceil(of.length[k] / size * (1 - 1e-12));
       if (wanted > most_cells)

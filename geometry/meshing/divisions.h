@@ -7,8 +7,8 @@
 
 namespace pneuma::geometry::meshing {
 
-// The divisions asked for, or those that make sides of elements at most `size` long. From a size, triangles get even
-// numbers on grids, so that their pattern is symmetric, and quadrilaterals elsewhere, where they need them.
+// The divisions asked for, or those that make sides of elements at most `size` long. A size gives even numbers: on
+// grids for a symmetric pattern with a node in the middle, and elsewhere for quadrilaterals, which need them.
 // Throws InputError for options that contradict each other or make no mesh.
 std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options);
 

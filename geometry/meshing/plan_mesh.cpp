@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/mesh_check.h"
 #include "geometry/meshing/corner_mesh.h"
 #include "geometry/meshing/structured.h"
+#include "geometry/meshing/unstructured.h"
 
 namespace pneuma::geometry::meshing {
 
@@ -43,11 +45,6 @@ Vec2 rim_middle(const Plan& plan, const Vec2& a, const Vec2& b) {
   return chord;
 }
 
-std::uint64_t side_key(Index a, Index b) {
-  const auto [low, high] = std::minmax(a, b);
-  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
-}
-
 // Adds mid-side and centre nodes where the element has them and numbers all nodes: those of the rim first, in order
 // around it, the others as the elements meet them.
 Mesh complete(const Plan& plan, const CornerMesh& corner_mesh, ElementType element) {
@@ -69,17 +66,18 @@ Mesh complete(const Plan& plan, const CornerMesh& corner_mesh, ElementType eleme
     return n;
   };
 
-  for (const Edge& edge : corner_mesh.edges) {
-    Edge numbered{edge.name, edge.closed, {}};
-    const std::size_t count = edge.nodes.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const Index a = edge.nodes[k];
-      numbered.nodes.push_back(corner(a));
-      if (!quadratic || (k + 1 == count && !edge.closed)) continue;
-      const Index b = edge.nodes[(k + 1) % count];
-      numbered.nodes.push_back(middle_of[side_key(a, b)] = add(rim_middle(plan, place(a), place(b))));
+  const std::vector<std::string> names = edge_names(plan);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::vector<Index>& points = corner_mesh.edges[i];
+    Edge edge{names[i], names.size() == 1, {}};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Index a = points[k];
+      edge.nodes.push_back(corner(a));
+      if (!quadratic || (k + 1 == points.size() && !edge.closed)) continue;
+      const Index b = points[(k + 1) % points.size()];
+      edge.nodes.push_back(middle_of[side_key(a, b)] = add(rim_middle(plan, place(a), place(b))));
     }
-    mesh.edges.push_back(numbered);
+    mesh.edges.push_back(edge);
   }
 
   Block block{"plan", BlockKind::foil, {}};
@@ -109,8 +107,23 @@ Mesh complete(const Plan& plan, const CornerMesh& corner_mesh, ElementType eleme
 
 Mesh mesh_plan(const Plan& plan, const MeshOptions& options) {
   check_plan(plan);
-  if (options.pattern == Pattern::unstructured) throw base::InputError("mesh pattern unstructured: not yet available");
-  return complete(plan, structured_mesh(plan, options), options.element);
+  // a clockwise triangle is meshed from its first point the other way round: its last edge comes first
+  Plan counterclockwise = plan;
+  bool turned = false;
+  if (auto* triangle = std::get_if<Triangle>(&counterclockwise)) {
+    auto& p = triangle->points;
+    turned = cross(p[1] - p[0], p[2] - p[0]) < 0;
+    if (turned) std::swap(p[1], p[2]);
+  }
+  CornerMesh corner_mesh = options.pattern == Pattern::structured ? structured_mesh(counterclockwise, options)
+                                                                  : unstructured_mesh(counterclockwise, options);
+  if (turned) std::swap(corner_mesh.edges[0], corner_mesh.edges[2]);
+  Mesh mesh = complete(plan, corner_mesh, options.element);
+  for (const MeshFault& fault : check_mesh(mesh)) {
+    if (fault.severity == Severity::error)
+      throw base::GeometryError("no valid mesh of the plan: " + fault.message + "; try another size or pattern");
+  }
+  return mesh;
 }
 
 Mesh stack(const Mesh& plan_mesh, const std::vector<Layer>& layers) {

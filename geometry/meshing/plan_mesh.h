@@ -16,15 +16,19 @@ enum class Pattern : std::uint8_t { structured, unstructured };
 struct MeshOptions {
   ElementType element = ElementType::T6;
   // exactly one of the two: wanted element size (m), or divisions along (length, width) of a rectangle, (per side, -)
-  // of a triangle, (per quarter rim, radial rings outside the core square) of a circle
+  // of a triangle, (per quarter rim, radial rings outside the core square) of a circle; an unstructured mesh takes the
+  // divisions of the rim only
   std::optional<double> size;
   std::optional<std::array<int, 2>> divisions;
   Pattern pattern = Pattern::structured;
 };
 
 // Meshes the plan once: one block named `plan`, counterclockwise seen from +z, nodes at z = 0, one edge per name of
-// edge_names(plan). Interior edges are straight; every node of a curved rim, mid-side nodes too, lies on it exactly.
-// Throws GeometryError with the place where no valid mesh exists.
+// edge_names(plan) with its nodes counterclockwise. Interior edges are straight; every node of a curved rim, mid-side
+// nodes too, lies on it exactly. No interior edge joins two nodes of the rim, and every element has a corner inside.
+// Sides of elements are at most `size` long, diagonals of a structured pattern may exceed it. The nodes of the edges
+// have the lowest numbers. The same call gives the same mesh. Throws InputError for options that contradict each other,
+// GeometryError with the place where no valid mesh exists.
 Mesh mesh_plan(const Plan& plan, const MeshOptions& options);
 
 struct Layer {

@@ -50,11 +50,11 @@ CornerMesh mesh_rectangle(const Rectangle& plan, const MeshOptions& options) {
   const auto node = [columns = n + 1](int i, int j) { return static_cast<Index>(j * columns + i); };
   add_grid(mesh, n, m, node);
 
-  mesh.edges = {{"south", false, {}}, {"east", false, {}}, {"north", false, {}}, {"west", false, {}}};
-  for (int i = 0; i <= n; ++i) mesh.edges[0].nodes.push_back(node(i, 0));
-  for (int j = 0; j <= m; ++j) mesh.edges[1].nodes.push_back(node(n, j));
-  for (int i = n; i >= 0; --i) mesh.edges[2].nodes.push_back(node(i, m));
-  for (int j = m; j >= 0; --j) mesh.edges[3].nodes.push_back(node(0, j));
+  mesh.edges.resize(4);
+  for (int i = 0; i <= n; ++i) mesh.edges[0].push_back(node(i, 0));
+  for (int j = 0; j <= m; ++j) mesh.edges[1].push_back(node(n, j));
+  for (int i = n; i >= 0; --i) mesh.edges[2].push_back(node(i, m));
+  for (int j = m; j >= 0; --j) mesh.edges[3].push_back(node(0, j));
   return mesh;
 }
 
@@ -119,8 +119,8 @@ CornerMesh mesh_circle(const Circle& plan, const MeshOptions& options) {
       add_cell(mesh, node(ring, p), node(ring + 1, p), node(ring + 1, p + 1), node(ring, p + 1), (ring + p) % 2 == 0);
     }
   }
-  mesh.edges = {{"rim", true, {}}};
-  for (int p = 0; p < 4 * n; ++p) mesh.edges[0].nodes.push_back(node(rings, p));
+  mesh.edges.resize(1);
+  for (int p = 0; p < 4 * n; ++p) mesh.edges[0].push_back(node(rings, p));
   return mesh;
 }
 
@@ -140,9 +140,9 @@ CornerMesh triangles_in_triangle(const Triangle& plan, int n) {
   }
   mesh.edges.resize(3);
   for (int i = 0; i <= n; ++i) {
-    mesh.edges[0].nodes.push_back(node(i, 0));
-    mesh.edges[1].nodes.push_back(node(n - i, i));
-    mesh.edges[2].nodes.push_back(node(0, n - i));
+    mesh.edges[0].push_back(node(i, 0));
+    mesh.edges[1].push_back(node(n - i, i));
+    mesh.edges[2].push_back(node(0, n - i));
   }
   release_rim(mesh); // the corner triangles are held at all three points
   return mesh;
@@ -192,28 +192,19 @@ CornerMesh quadrilaterals_in_triangle(const Triangle& plan, int h) {
   }
   mesh.edges.resize(3);
   for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i <= 2 * h; ++i) mesh.edges[static_cast<std::size_t>(k)].nodes.push_back(side(k, i));
+    for (int i = 0; i <= 2 * h; ++i) mesh.edges[static_cast<std::size_t>(k)].push_back(side(k, i));
   }
   return mesh;
 }
 
-CornerMesh mesh_triangle(const Triangle& given, const MeshOptions& options) {
-  const int n = divisions_of(given, options)[0];
+CornerMesh mesh_triangle(const Triangle& plan, const MeshOptions& options) {
+  const int n = divisions_of(plan, options)[0];
   const bool triangles = corners_per_element(options.element) == 3;
   if (!triangles && n % 2 != 0)
     throw base::InputError(fmt::format("mesh divisions {}: quadrilaterals on a triangular plan need an even number of "
                                        "divisions per side, such as {}",
                                        n, n + 1));
-  // a clockwise outline is followed backwards from its first point; edge k then lies between the points 2-k and 3-k
-  const base::Vec2 a = given.points[1] - given.points[0];
-  const base::Vec2 b = given.points[2] - given.points[0];
-  const bool clockwise = cross(a, b) < 0;
-  Triangle plan = given;
-  if (clockwise) std::swap(plan.points[1], plan.points[2]);
-  CornerMesh mesh = triangles ? triangles_in_triangle(plan, n) : quadrilaterals_in_triangle(plan, n / 2);
-  if (clockwise) std::swap(mesh.edges[0], mesh.edges[2]);
-  for (std::size_t k = 0; k < 3; ++k) mesh.edges[k].name = fmt::format("e{}", k + 1);
-  return mesh;
+  return triangles ? triangles_in_triangle(plan, n) : quadrilaterals_in_triangle(plan, n / 2);
 }
 
 } // namespace

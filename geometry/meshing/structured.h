@@ -7,7 +7,8 @@
 namespace pneuma::geometry::meshing {
 
 // Regular pattern, the same on both sides of each axis for even divisions. Rectangle: a grid. Circle: a core block with
-// rings around it. Triangle: similar triangles, or three blocks of quadrilaterals around the centroid.
+// rings around it. Triangle: similar triangles, or three blocks of quadrilaterals around the centroid (points
+// counterclockwise).
 CornerMesh structured_mesh(const Plan& plan, const MeshOptions& options);
 
 } // namespace pneuma::geometry::meshing

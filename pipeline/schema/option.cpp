@@ -137,6 +137,26 @@ const Value* Value::operator[](const std::string& name) const {
   return value != nullptr && value->valid ? value : nullptr;
 }
 
+double number_of(const Value& group, const std::string& key, double otherwise) {
+  const Value* value = group[key];
+  return value != nullptr ? value->number : otherwise;
+}
+
+std::optional<double> optional_number(const Value& group, const std::string& key) {
+  const Value* value = group[key];
+  return value != nullptr ? std::optional<double>(value->number) : std::nullopt;
+}
+
+std::optional<int> optional_integer(const Value& group, const std::string& key) {
+  const std::optional<double> value = optional_number(group, key);
+  return value ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
+}
+
+std::string text_of(const Value& group, const std::string& key) {
+  const Value* value = group[key];
+  return value != nullptr ? value->text : "";
+}
+
 namespace {
 
 NodeKind kind_of(const Option& option) {
@@ -255,7 +275,7 @@ public:
     case Type::text:
       break;
     case Type::name:
-      read_name(node, path, value);
+      check_name(node.text, node.mark, value);
       break;
     case Type::flag:
       read_flag(node, path, value);
@@ -309,8 +329,6 @@ private:
     fail(mark, fmt::format("`{}` is no name: letters, digits, _ and - are allowed", name));
     value.valid = false;
   }
-
-  void read_name(const Node& node, const std::string&, Value& value) { check_name(node.text, node.mark, value); }
 
   void read_flag(const Node& node, const std::string& path, Value& value) {
     value.flag = node.text == "on" || node.text == "true" || node.text == "yes";
@@ -501,11 +519,11 @@ private:
 };
 
 void describe(const Option& option, const std::string& indent, std::string& out) {
-  out += fmt::format("{}{}: {}", indent, option.name, option.text);
   if (!option.not_yet.empty()) {
-    out += fmt::format(" [not available yet; {}]\n", option.not_yet);
+    out += fmt::format("{}{}: not available yet; {}\n", indent, option.name, option.not_yet);
     return;
   }
+  out += fmt::format("{}{}: {}", indent, option.name, option.text);
   const bool is_scalar = kind_of(option) == NodeKind::scalar && option.type != Type::either;
   if (is_scalar) out += "; " + expected(option);
   if (option.limits) out += ", " + option.limits->words;

@@ -97,6 +97,12 @@ struct Value {
   const Value* operator[](const std::string& name) const; // present and valid, otherwise nullptr
 };
 
+// What a key of a group holds; `otherwise`, nothing or an empty text if it is absent or wrong.
+double number_of(const Value& group, const std::string& key, double otherwise = 0);
+std::optional<double> optional_number(const Value& group, const std::string& key);
+std::optional<int> optional_integer(const Value& group, const std::string& key);
+std::string text_of(const Value& group, const std::string& key);
+
 // Checks a tree against an option and converts it. Every problem is added to `problems`; with `only_available` off,
 // what is not available yet is passed over in silence. The places of values that the user gave go to `origins` by path.
 struct Check {

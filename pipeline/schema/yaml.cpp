@@ -107,6 +107,8 @@ private:
                                                           parent.key.text, first->mark.line)});
         return;
       }
+      // where nothing stands, the parser names the place of what comes next
+      if (node.kind == NodeKind::null && node.text.empty()) node.mark = parent.key.mark;
       parent.node.entries.push_back({parent.key.text, parent.key.mark, std::move(node)});
     }
   }

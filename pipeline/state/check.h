@@ -11,7 +11,7 @@ namespace pneuma::pipeline::state {
 // nothing if all fits together. What is written passes it, and what is read passes it again.
 std::string first_fault(const State& state);
 
-// Components of a block's values at its Gauss points: elements x points.
+// Gauss points of a block: elements x points of the stress rule.
 std::size_t gauss_count(const State& state, const geometry::Block& block);
 
 } // namespace pneuma::pipeline::state

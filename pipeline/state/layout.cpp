@@ -233,6 +233,7 @@ Foil read_foil(const Group& group, const State& state) {
 
 void write_chambers(const Group& group, const std::vector<Chamber>& chambers) {
   std::vector<std::uint8_t> laws;
+  laws.reserve(chambers.size());
   for (const Chamber& chamber : chambers) laws.push_back(static_cast<std::uint8_t>(chamber.law));
   group.write("name", column(chambers, &Chamber::name));
   write_list(group, "outer", column(chambers, &Chamber::outer), "1");
@@ -274,6 +275,7 @@ std::vector<Chamber> read_chambers(const Group& group) {
 // lie here, too.
 void write_fields(const Group& group, const State& state) {
   std::vector<std::uint8_t> locations;
+  locations.reserve(state.fields.size());
   for (const Field& field : state.fields) locations.push_back(static_cast<std::uint8_t>(field.location));
   group.write("name", column(state.fields, &Field::name));
   write_list(group, "location", locations, "1");

@@ -9,17 +9,19 @@ namespace pneuma::pipeline::state {
 
 // Writes `state` to `path` (name ends in .hdf) as VTKHDF 1.0 UnstructuredGrid, what ParaView need not see in the group
 // /pneuma of the same file. Written to a temporary file, flushed and renamed; the digest `<path>.sha256` first, then
-// the state, so that a pair that does not match means "not done". Throws Error (exit code 1 or 3) with the path and the
-// system's reason, e.g. a full disk; then neither file is changed. Equal states give equal bytes.
+// the state, so that a pair that does not match means "not done". Equal states give equal bytes. The folder must exist.
+// Throws StateError with the path and the system's reason, e.g. a full disk, and Error (exit code 1) for a state whose
+// parts do not fit together; then neither file is changed.
 void write_state(const State& state, const std::filesystem::path& path);
 
-// Reads what write_state wrote, bit for bit. The digest beside the file is verified before libhdf5 opens it; without a
-// matching digest the file is first opened in a child process with limits of time and memory. Every length is checked.
-// Throws StateError: missing, damaged, foreign, other schema version.
+// Reads what write_state wrote, bit for bit. The digest beside the file is verified before libhdf5 parses its bytes;
+// without a digest a child process with limits of time and memory parses them first. Every length is checked. Throws
+// StateError: missing, digest of something else, damaged, foreign, other schema version. Call it while no other thread
+// is inside libhdf5.
 State read_state(const std::filesystem::path& path);
 
-// Writes `state` as step `number` into the folder: steps/NNNN.hdf, and steps.hdf.series beside the folder (JSON, what
-// ParaView opens as a series), with `time` as the step's time value.
+// Writes states as steps into the folder: steps/0000.hdf and so on, and steps.hdf.series (JSON, what ParaView opens as
+// a series) with `time` as the step's time value. The first write removes the steps of an earlier run.
 class StepSeries {
 public:
   explicit StepSeries(std::filesystem::path folder);

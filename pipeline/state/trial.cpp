@@ -92,7 +92,7 @@ std::string try_in_child(const std::function<void()>& work, unsigned seconds, st
   if (id == 0) child(work, seconds, memory, ends[1]);
   const int fork_error = errno;
   close(ends[1]);
-  const std::string reason = id > 0 ? read_all(ends[0]) : "";
+  std::string reason = id > 0 ? read_all(ends[0]) : "";
   close(ends[0]);
   if (id < 0) return fmt::format("no child process: {}", std::strerror(fork_error));
   int status = 0;

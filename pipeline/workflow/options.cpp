@@ -281,12 +281,7 @@ Option material() {
             number("nu", "Poisson's ratio").required().within({-1, 0.5, "above -1, up to 0.5", false, true}),
             text("E1", "").unavailable(elastic), text("E2", "").unavailable(elastic),
             text("nu12", "").unavailable(elastic), text("G12", "").unavailable(elastic),
-            choice("tension_field",
-                   {value("off", "carries compression"), value("false", "carries compression"),
-                    value("on", "").unavailable("foils carry compression: tension_field: false"),
-                    value("true", "").unavailable("foils carry compression: tension_field: false")},
-                   "a foil that cannot carry compression")
-                .otherwise("false"),
+            flag("tension_field", "a foil that cannot carry compression").otherwise("off"),
             quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
             quantity("thermal_expansion", "K-1", "linear"), text("source", "where the values come from"),
             table("strength", text("value", ""), "").unavailable("the report does not use strengths so far")},

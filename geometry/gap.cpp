@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/gap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "geometry/shape_functions.h"
+
+namespace pneuma::geometry {
+
+namespace {
+
+using base::Mat2;
+using base::Mat3;
+using base::MatX;
+using base::Vec2;
+
+struct Place {
+  double xi, eta;
+};
+
+constexpr Place triangle_nodes[] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
+constexpr Place square_nodes[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0, -1}, {1, 0}, {0, 1}, {-1, 0}, {0, 0}};
+// points inside, about as dense as the nodes
+constexpr Place triangle_inside[] = {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}};
+constexpr Place square_inside[] = {{0, 0}, {-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+
+std::span<const Place> inside_of(ElementType type) {
+  switch (type) {
+  case ElementType::T3:
+    return std::span(triangle_inside).first(1);
+  case ElementType::T6:
+    return triangle_inside;
+  case ElementType::Q4:
+    return std::span(square_inside).first(1);
+  default:
+    return std::span(square_inside).subspan(1); // the middle is a node
+  }
+}
+
+template <ElementType E>
+using Element = Eigen::Matrix<double, 3, nodes_per_element(E)>;
+
+template <ElementType E>
+Element<E> gather(const MatX& local, const std::vector<Index>& connectivity, Index e) {
+  constexpr int n = nodes_per_element(E);
+  Element<E> x;
+  for (int k = 0; k < n; ++k) x.col(k) = local.col(connectivity[static_cast<std::size_t>(e * n + k)]);
+  return x;
+}
+
+// Height of the element at a place in plan, if the place lies on it and the element faces up there. Newton's method.
+template <ElementType E>
+std::optional<double> height_at(const Element<E>& x, const Vec2& at) {
+  const Vec2 low = x.template topRows<2>().rowwise().minCoeff();
+  const Vec2 high = x.template topRows<2>().rowwise().maxCoeff();
+  const double size = (high - low).maxCoeff();
+  const double margin = is_quadratic(E) ? 0.2 * size : 1e-9 * size; // curved sides leave the box of their nodes
+  if ((at.array() < low.array() - margin).any() || (at.array() > high.array() + margin).any()) return {};
+
+  constexpr bool triangle = corners_per_element(E) == 3;
+  Vec2 place = triangle ? Vec2(1.0 / 3, 1.0 / 3) : Vec2(0, 0);
+  constexpr int most = E == ElementType::T3 ? 2 : 15;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    const auto shape = shape_functions<E>(place[0], place[1]);
+    const Eigen::Matrix<double, 3, 2> tangents = x * shape.derivative;
+    const Mat2 jacobian = tangents.template topRows<2>();
+    const double determinant = jacobian.determinant();
+    const Vec3 point = x * shape.value;
+    const Vec2 miss = at - point.head<2>();
+    if (miss.norm() <= 1e-12 * size) {
+      constexpr double edge = 1e-8; // a point on a side belongs to both neighbours
+      const bool on =
+          triangle ? place.minCoeff() >= -edge && place.sum() <= 1 + edge : place.cwiseAbs().maxCoeff() <= 1 + edge;
+      if (!on || determinant <= 1e-12 * size * size) return {};
+      return point.z();
+    }
+    if (!(std::abs(determinant) > 1e-14 * size * size)) return {};
+    place += jacobian.inverse() * miss;
+    if (!(place.cwiseAbs().maxCoeff() < 4)) return {};
+  }
+  return {};
+}
+
+// Boxes of a grid in plan, each with the elements whose own box touches it.
+struct Grid {
+  Vec2 low = Vec2::Zero();
+  double box = 1; // m, side of a box
+  Index columns = 0, rows = 0;
+  std::vector<Index> first; // of each box, in `elements`
+  std::vector<Index> elements;
+
+  Index column(double x) const { return std::clamp(static_cast<Index>((x - low[0]) / box), Index{0}, columns - 1); }
+  Index row(double y) const { return std::clamp(static_cast<Index>((y - low[1]) / box), Index{0}, rows - 1); }
+  std::span<const Index> at(const Vec2& place) const {
+    if (!(place.array() >= low.array()).all() || place[0] > low[0] + box * columns || place[1] > low[1] + box * rows)
+      return {};
+    const auto b = static_cast<std::size_t>(row(place[1]) * columns + column(place[0]));
+    return std::span(elements).subspan(static_cast<std::size_t>(first[b]),
+                                       static_cast<std::size_t>(first[b + 1] - first[b]));
+  }
+};
+
+template <ElementType E>
+Grid make_grid(const MatX& local, const std::vector<Index>& connectivity) {
+  const auto count = static_cast<Index>(connectivity.size()) / nodes_per_element(E);
+  std::vector<std::pair<Vec2, Vec2>> boxes;
+  boxes.reserve(static_cast<std::size_t>(count));
+  for (Index e = 0; e < count; ++e) {
+    const Element<E> x = gather<E>(local, connectivity, e);
+    const Vec2 low = x.template topRows<2>().rowwise().minCoeff();
+    const Vec2 high = x.template topRows<2>().rowwise().maxCoeff();
+    const double margin = is_quadratic(E) ? 0.2 * (high - low).maxCoeff() : 0.0;
+    boxes.emplace_back(low.array() - margin, high.array() + margin);
+  }
+  Grid grid;
+  Vec2 high = boxes.front().second;
+  grid.low = boxes.front().first;
+  for (const auto& [a, b] : boxes) {
+    grid.low = grid.low.cwiseMin(a);
+    high = high.cwiseMax(b);
+  }
+  const Vec2 extent = high - grid.low;
+  // about one box per element; a foil that has collapsed to a line still gets boxes
+  grid.box = std::max(std::sqrt(extent[0] * extent[1] / count), extent.maxCoeff() / count);
+  if (!(grid.box > 0) || !std::isfinite(grid.box)) return grid;
+  grid.columns = static_cast<Index>(extent[0] / grid.box) + 1;
+  grid.rows = static_cast<Index>(extent[1] / grid.box) + 1;
+
+  const auto each_box = [&](auto&& visit) {
+    for (Index e = 0; e < count; ++e) {
+      const auto& [a, b] = boxes[static_cast<std::size_t>(e)];
+      for (Index r = grid.row(a[1]); r <= grid.row(b[1]); ++r) {
+        for (Index c = grid.column(a[0]); c <= grid.column(b[0]); ++c)
+          visit(static_cast<std::size_t>(r * grid.columns + c), e);
+      }
+    }
+  };
+  grid.first.assign(static_cast<std::size_t>(grid.columns * grid.rows) + 1, 0);
+  each_box([&](std::size_t b, Index) { ++grid.first[b + 1]; });
+  for (std::size_t b = 1; b < grid.first.size(); ++b) grid.first[b] += grid.first[b - 1];
+  grid.elements.resize(static_cast<std::size_t>(grid.first.back()));
+  std::vector<Index> next = grid.first;
+  each_box([&](std::size_t b, Index e) { grid.elements[static_cast<std::size_t>(next[b]++)] = e; });
+  return grid;
+}
+
+} // namespace
+
+GapSearch::GapSearch(const Mesh& mesh, const Block& upper, const Block& lower, const Vec3& up)
+    : element_(mesh.element), upper_(upper.connectivity), lower_(lower.connectivity) {
+  const Vec3 vertical = up.normalized();
+  const Vec3 first = vertical.unitOrthogonal();
+  frame_.row(0) = first;
+  frame_.row(1) = vertical.cross(first);
+  frame_.row(2) = vertical;
+
+  std::vector<bool> done(mesh.nodes.size(), false); // nodes already sampled, and those on edges
+  for (const Edge& edge : mesh.edges) {
+    for (const Index i : edge.nodes) done[static_cast<std::size_t>(i)] = true;
+  }
+  const bool triangle = corners_per_element(element_) == 3;
+  const Index others = mesh.element_count(lower);
+  for (Index e = 0; e < mesh.element_count(upper); ++e) {
+    const Index hint = std::min(e, others - 1); // stacked blocks are copies: the same element is the likeliest
+    const auto nodes = mesh.element_nodes(upper, e);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const auto i = static_cast<std::size_t>(nodes[k]);
+      const Place place = triangle ? triangle_nodes[k % 6] : square_nodes[k];
+      if (!done[i]) samples_.push_back({e, place.xi, place.eta, nodes[k], hint});
+      done[i] = true;
+    }
+    for (const Place& place : inside_of(element_)) samples_.push_back({e, place.xi, place.eta, -1, hint});
+  }
+}
+
+Gap GapSearch::smallest(std::span<const Vec3> positions) {
+  return dispatch(element_, [&]<ElementType E>() { return search<E>(positions); });
+}
+
+template <ElementType E>
+Gap GapSearch::search(std::span<const Vec3> positions) {
+  local_.resize(3, static_cast<Eigen::Index>(positions.size()));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    local_.col(static_cast<Eigen::Index>(i)).noalias() = frame_ * positions[i];
+
+  Gap gap;
+  std::optional<Grid> grid; // made when a point has left its element
+  for (Sample& sample : samples_) {
+    Vec3 point;
+    if (sample.node >= 0)
+      point = local_.col(sample.node);
+    else
+      point = gather<E>(local_, upper_, sample.element) * shape_functions<E>(sample.xi, sample.eta).value;
+    const Vec2 at = point.head<2>();
+    std::optional<double> height = height_at<E>(gather<E>(local_, lower_, sample.hint), at);
+    if (!height) {
+      if (!grid) grid = make_grid<E>(local_, lower_);
+      for (const Index e : grid->at(at)) {
+        height = height_at<E>(gather<E>(local_, lower_, e), at);
+        if (height) {
+          sample.hint = e;
+          break;
+        }
+      }
+    }
+    if (!height) {
+      ++gap.skipped;
+      continue;
+    }
+    ++gap.located;
+    const double value = point.z() - *height;
+    if (value < gap.value) {
+      gap.value = value;
+      gap.at = frame_.transpose() * point;
+    }
+  }
+  return gap;
+}
+
+} // namespace pneuma::geometry

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/schema/option.h"
+#include "pipeline/workflow/settings.h"
+
+namespace pneuma::pipeline::workflow {
+
+using schema::Value;
+
+base::Vec2 vec2_of(const Value& list);
+Vec3 vec3_of(const Value& list);
+
+// Turns checked values into settings and checks what no single option can know: names, neighbours, the graph. Used by
+// read_workflow and read_stage alone.
+class Builder {
+public:
+  Builder(std::filesystem::path file, bool is_stage_file);
+
+  std::vector<Problem> problems;
+
+  Workflow build(const schema::Node& tree);
+
+private:
+  void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
+  void warn(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), false}); }
+
+  // builder_cushion.cpp
+  void read_site(const Value& site);
+  Material material_of(const std::string& name, const Value& value) const;
+  // `is_used`: by a foil, or in place; a file may hold more
+  void add_material(const std::string& name, const Value& value, bool is_used);
+  void read_materials(const Value& root);
+  // Names of materials that foils of the file use: a file may hold laws that are not available yet.
+  static std::set<std::string> used_materials(const Value& root);
+  void read_materials_file(const Value& path, const Value& root);
+  // Only what foils use belongs to the settings of a stage.
+  void keep_used_materials();
+  void read_cushion(const Value& cushion);
+  void read_plan(const Value& plan);
+  void read_edges(const Value& edges);
+  void read_foils(const Value& foils);
+  void check_foil_name(const Value& name);
+  // Position of a wall from the weather side inwards; the base comes after the last foil.
+  std::optional<std::size_t> wall_position(const Value& wall);
+  void fail_unknown_foil(const Mark& mark, const std::string& name);
+  void read_chambers(const Value& chambers);
+  void read_walls(const Value& between, ChamberSettings& chamber, std::map<std::size_t, std::string>& gaps);
+  void copy_origin(const std::string& from, const std::string& to);
+
+  // builder_stages.cpp
+  void add_mesh(const Value& mesh);
+  void check_size(const Value& mesh, const MeshSettings& out);
+  // {FOIL or all: value} for every foil.
+  std::map<std::string, double> per_foil(const Value& table, const std::string& path, const std::string& key);
+  void check_chamber(const Mark& mark, const std::string& name);
+  std::map<std::string, double> pressures_of(const Value& stage);
+  static SolverOptions options_of(const Value& stage);
+  static Control control_of(const Value& stage);
+  void read_stages(const Value& stages);
+  // Kind of the stage that `from` names; empty: unknown, or refused where it stands.
+  static std::string kind_of(const std::string& id, const std::map<std::string, const Value*>& known);
+  void add_stage(const std::string& id, const Value& stage, const std::map<std::string, const Value*>& known);
+  void check_from(const std::string& id, const Value& stage, const Value& from, const StageSettings& out,
+                  const std::map<std::string, const Value*>& known);
+  // Follows `from`; each circle is reported once, at its first stage in the file.
+  bool in_cycle(const std::string& id, const Value& from, const std::map<std::string, const Value*>& known);
+  FormfindSettings formfind_of(const Value& stage, const std::string& path);
+  InflateSettings inflate_of(const Value& stage, const std::string& path, const std::string& from_run);
+  WindSettings wind_of(const Value& stage);
+  Gas gas_of(const Value& value);
+  Load load_of(const Value& value, const Value* factors, const std::vector<Load>& before);
+  void check_loaded_foil(const Value& foil, const Load& load);
+  Region region_of(const Value& region);
+  void check_factors(const Value* factors, const std::vector<Load>& loads);
+  void check_gravity();
+
+  Workflow workflow_;
+  bool is_stage_file_ = false;
+  bool materials_known_ = true;
+  bool plan_known_ = false;
+  std::vector<std::string> material_names_, foil_names_, chamber_names_;
+  std::vector<std::pair<std::string, Mark>> material_places_; // where foils name them
+};
+
+} // namespace pneuma::pipeline::workflow

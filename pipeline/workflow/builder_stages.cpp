@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/workflow/builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "pipeline/schema/spelling.h"
+#include "pipeline/workflow/options.h"
+
+namespace pneuma::pipeline::workflow {
+
+using schema::Node;
+using schema::NodeKind;
+using schema::number_of;
+using schema::optional_integer;
+using schema::optional_number;
+using schema::suggestion;
+using schema::text_of;
+
+namespace {
+
+constexpr const char* all_foils = "all";
+
+} // namespace
+
+void Builder::add_mesh(const Value& mesh) {
+  MeshSettings out;
+  out.mark = mesh.mark;
+  const std::string element = text_of(mesh, "element");
+  const std::vector<std::string> names = {"T3", "T6", "Q4", "Q9"};
+  const auto found = std::find(names.begin(), names.end(), element);
+  if (found != names.end()) out.element = static_cast<geometry::ElementType>(found - names.begin());
+  out.size = optional_number(mesh, "size");
+  if (const Value* divisions = mesh["divisions"]) {
+    const bool is_pair = !divisions->items.empty();
+    const double first = is_pair ? divisions->items[0].number : divisions->number;
+    const double second = is_pair ? divisions->items[1].number : divisions->number;
+    out.divisions = {static_cast<int>(first), static_cast<int>(second)};
+    if (is_pair && plan_known_ && std::holds_alternative<geometry::Triangle>(workflow_.cushion.plan)) {
+      fail(divisions->mark, "a triangle has one number of `divisions`, along each side");
+    }
+    for (const char* end : {"0", "1"}) {
+      copy_origin("mesh.divisions", std::string("mesh.divisions.") + end);
+    }
+  }
+  const std::string pattern = text_of(mesh, "pattern");
+  if (!pattern.empty()) {
+    out.pattern = pattern == "structured" ? MeshPattern::structured : MeshPattern::unstructured;
+  }
+  if (const Value* rule = mesh["stress_rule"]; rule != nullptr && rule->text == "reduced") {
+    out.stress_rule = geometry::StressRule::reduced;
+    if (mesh["element"] != nullptr && out.element != geometry::ElementType::Q9) {
+      fail(rule->mark, fmt::format("the reduced rule is for Q9, not {}; allowed: full", element));
+    }
+  }
+  check_size(mesh, out);
+  StageSettings stage;
+  stage.id = stage.run = "mesh";
+  stage.mark = mesh.key;
+  stage.settings = out;
+  workflow_.stages.push_back(std::move(stage));
+}
+
+void Builder::check_size(const Value& mesh, const MeshSettings& out) {
+  if (!out.size || !plan_known_) return;
+  const Mark& mark = mesh["size"]->mark;
+  const double area = geometry::area(workflow_.cushion.plan);
+  const double elements = area / (*out.size * *out.size);
+  if (elements < 1) {
+    warn(mark, fmt::format("`size` {} m is larger than the cushion (about {:.3g} m); is it meant?", *out.size,
+                           std::sqrt(area)));
+  } else if (elements > 500'000) {
+    warn(mark, fmt::format("`size` {} m makes about {:.0e} elements a foil; is it meant?", *out.size, elements));
+  }
+}
+
+std::map<std::string, double> Builder::per_foil(const Value& table, const std::string& path, const std::string& key) {
+  std::map<std::string, double> out;
+  const Value* all = table[all_foils];
+  for (const std::string& foil : foil_names_) {
+    const Value* own = table[foil];
+    if (const Value* used = own != nullptr ? own : all) out[foil] = used->number;
+    copy_origin(path + "." + key + "." + (own != nullptr ? foil : all_foils), path + ".prestress." + foil);
+    if (table.find(foil) == nullptr && table.find(all_foils) == nullptr) {
+      fail(table.mark, fmt::format("`{}` says nothing about the foil `{}`; name it, or use `all`", key, foil));
+    }
+  }
+  for (const auto& [name, value] : table.members) {
+    const bool known = std::find(foil_names_.begin(), foil_names_.end(), name) != foil_names_.end();
+    if (!known && name != all_foils && !foil_names_.empty()) fail_unknown_foil(value.key, name);
+  }
+  return out;
+}
+
+void Builder::check_chamber(const Mark& mark, const std::string& name) {
+  if (std::find(chamber_names_.begin(), chamber_names_.end(), name) != chamber_names_.end()) return;
+  fail(mark, fmt::format("there is no chamber `{}`{}; chambers: {}", name, suggestion(name, chamber_names_),
+                         schema::joined(chamber_names_)));
+}
+
+std::map<std::string, double> Builder::pressures_of(const Value& stage) {
+  std::map<std::string, double> out;
+  const Value* table = stage.find("gauge_pressure");
+  if (table == nullptr || table->read_as == nullptr) return out;
+  for (const auto& [name, value] : table->members) {
+    check_chamber(value.key, name);
+    out[name] = value.number;
+  }
+  for (const std::string& name : chamber_names_) {
+    if (table->valid && table->find(name) == nullptr) {
+      fail(table->mark,
+           fmt::format("`gauge_pressure` says nothing about the chamber `{}`; 0 Pa leaves it empty", name));
+    }
+  }
+  return out;
+}
+
+SolverOptions Builder::options_of(const Value& stage) {
+  const Value* options = stage["options"];
+  if (options == nullptr) return {};
+  return {optional_number(*options, "tolerance"), optional_integer(*options, "max_iterations")};
+}
+
+Control Builder::control_of(const Value& stage) {
+  const Value* control = stage["control"];
+  if (control == nullptr) return {};
+  return {optional_integer(*control, "steps")};
+}
+
+void Builder::read_stages(const Value& stages) {
+  std::map<std::string, const Value*> known;
+  for (const auto& [id, stage] : stages.members) {
+    if (id == "mesh" && !is_stage_file_) {
+      fail(stage.key, "a stage cannot be called `mesh`: this is the stage that the key `mesh` at the top level makes");
+    }
+    known[id] = &stage;
+  }
+  for (const auto& [id, stage] : stages.members) add_stage(id, stage, known);
+}
+
+std::string Builder::kind_of(const std::string& id, const std::map<std::string, const Value*>& known) {
+  if (id == "mesh") return "mesh";
+  const auto found = known.find(id);
+  if (found == known.end() || found->second->read_as == nullptr) return "";
+  const schema::Option& read_as = *found->second->read_as;
+  return read_as.type == schema::Type::group && read_as.not_yet.empty() ? read_as.name : "";
+}
+
+void Builder::add_stage(const std::string& id, const Value& stage, const std::map<std::string, const Value*>& known) {
+  StageSettings out;
+  out.id = id;
+  out.run = stage.text;
+  out.mark = stage.key;
+  out.options = options_of(stage);
+  if (const Value* from = stage["from"]) {
+    out.from = from->text;
+    out.from_run = is_stage_file_ ? text_of(stage, "from_run") : kind_of(out.from, known);
+    check_from(id, stage, *from, out, known);
+  }
+  const std::string path = "stages." + id;
+  if (out.run == "formfind") {
+    out.settings = formfind_of(stage, path);
+  } else if (out.run == "inflate") {
+    out.settings = inflate_of(stage, path, out.from_run);
+  } else if (out.run == "wind") {
+    out.settings = wind_of(stage);
+  }
+  workflow_.stages.push_back(std::move(out));
+}
+
+void Builder::check_from(const std::string& id, const Value& stage, const Value& from, const StageSettings& out,
+                         const std::map<std::string, const Value*>& known) {
+  if (!is_stage_file_ && out.from != "mesh" && !known.contains(out.from)) {
+    std::vector<std::string> ids = {"mesh"};
+    for (const StageSettings& other : workflow_.stages) {
+      if (other.id != "mesh") ids.push_back(other.id);
+    }
+    for (const auto& item : known) {
+      if (item.first != id && std::find(ids.begin(), ids.end(), item.first) == ids.end()) ids.push_back(item.first);
+    }
+    return fail(from.mark, fmt::format("there is no stage `{}`{}; stages: {}", out.from, suggestion(out.from, ids),
+                                       schema::joined(ids)));
+  }
+  if (in_cycle(id, from, known)) return;
+  static const std::map<std::string, std::vector<std::string>> starts = {
+      {"formfind", {"mesh"}}, {"inflate", {"mesh", "formfind"}}, {"wind", {"inflate"}}};
+  const auto allowed = starts.find(out.run);
+  if (!stage.valid || allowed == starts.end() || out.from_run.empty()) return;
+  if (std::find(allowed->second.begin(), allowed->second.end(), out.from_run) != allowed->second.end()) return;
+  const std::string starts_from = schema::joined(allowed->second);
+  if (out.run == "wind" && out.from_run == "wind") {
+    return fail(
+        from.mark,
+        fmt::format("`run: wind` from a stage of `run: wind` is not available yet; it starts from: {}", starts_from));
+  }
+  fail(from.mark, fmt::format("`run: {}` cannot start from `{}` (`run: {}`); it starts from: {}", out.run, out.from,
+                              out.from_run, starts_from));
+}
+
+bool Builder::in_cycle(const std::string& id, const Value& from, const std::map<std::string, const Value*>& known) {
+  std::vector<std::string> way = {id};
+  std::string at = from.text;
+  while (at != id) {
+    const auto next = known.find(at);
+    if (at == "mesh" || next == known.end() || std::find(way.begin(), way.end(), at) != way.end()) return false;
+    way.push_back(at);
+    at = text_of(*next->second, "from");
+  }
+  const bool is_first = std::all_of(way.begin(), way.end(), [&](const std::string& other) {
+    const Mark &here = known.at(id)->key, &there = known.at(other)->key;
+    return std::tie(here.line, here.column) <= std::tie(there.line, there.column);
+  });
+  if (is_first) {
+    way.push_back(id);
+    fail(from.mark,
+         fmt::format("`from` goes in a circle: {}; a chain of stages begins at mesh", fmt::join(way, " <- ")));
+  }
+  return true;
+}
+
+FormfindSettings Builder::formfind_of(const Value& stage, const std::string& path) {
+  FormfindSettings out;
+  out.gauge_pressure = pressures_of(stage);
+  if (const Value* prestress = stage["prestress"]) out.prestress = per_foil(*prestress, path, "prestress");
+  if (const Value* stress = stage["stress"]) {
+    out.prestress = per_foil(*stress, path, "stress");
+    for (const FoilSettings& foil : workflow_.cushion.foils) out.prestress[foil.name] *= foil.thickness;
+  }
+  return out;
+}
+
+InflateSettings Builder::inflate_of(const Value& stage, const std::string& path, const std::string& from_run) {
+  InflateSettings out;
+  out.gauge_pressure = pressures_of(stage);
+  out.contact_stops = text_of(stage, "contact") != "ignore";
+  out.control = control_of(stage);
+  const Value* reference = stage.find("reference");
+  const Value* prestress = stage.find("prestress");
+  if (const Value* valid = stage["reference"]) {
+    out.reference = valid->text == "prestressed" ? Reference::prestressed : Reference::stress_free;
+  }
+  if (from_run == "formfind") {
+    if (reference == nullptr) {
+      fail(stage.mark,
+           "from a formfind stage, `reference` must say what the found form is: prestressed or stress_free");
+    }
+    if (prestress != nullptr) {
+      fail(prestress->key, "`prestress` is for a start from mesh; from a formfind stage use `reference: prestressed`");
+    }
+  } else if (from_run == "mesh" && reference != nullptr) {
+    fail(reference->key, "`reference` is for a start from a formfind stage; from mesh the flat plan is the reference");
+  }
+  if (const Value* valid = stage["prestress"]) out.prestress = per_foil(*valid, path, "prestress");
+  return out;
+}
+
+WindSettings Builder::wind_of(const Value& stage) {
+  WindSettings out;
+  out.contact_stops = text_of(stage, "contact") != "ignore";
+  out.control = control_of(stage);
+  for (const std::string& chamber : chamber_names_) out.gas[chamber] = RegulatedGas{};
+  if (const Value* table = stage.find("gas")) {
+    for (const auto& [name, value] : table->members) {
+      check_chamber(value.key, name);
+      if (value.valid) out.gas[name] = gas_of(value);
+    }
+  }
+  const Value* factors = stage.find("factors");
+  if (const Value* loads = stage.find("loads")) {
+    for (const Value& load : loads->items) out.loads.push_back(load_of(load, factors, out.loads));
+  }
+  check_factors(factors, out.loads);
+  return out;
+}
+
+Gas Builder::gas_of(const Value& value) {
+  if (value.text == "regulated") return RegulatedGas{optional_number(value, "gauge_pressure")};
+  if (value.text == "volume") return VolumeGas{number_of(value, "volume")};
+  ClosedGas gas{number_of(value, "kappa", 1), optional_number(value, "temperature"),
+                optional_number(value, "ambient_pressure")};
+  if (gas.temperature && gas.kappa != 1) {
+    fail(value["temperature"]->mark,
+         fmt::format("`temperature` is for kappa 1, not {}: otherwise the gas law itself sets it", gas.kappa));
+  }
+  return gas;
+}
+
+Load Builder::load_of(const Value& value, const Value* factors, const std::vector<Load>& before) {
+  Load load;
+  load.mark = value.mark;
+  load.name = text_of(value, "name");
+  load.foil = text_of(value, "foil");
+  if (const Value* name = value["name"]) {
+    if (std::any_of(before.begin(), before.end(), [&](const Load& other) { return other.name == load.name; })) {
+      fail(name->mark, fmt::format("a second load `{}`: every load needs a name of its own", load.name));
+    }
+  }
+  if (factors != nullptr) load.factor = number_of(*factors, load.name, 1);
+  if (const Value* wind = value["wind"]) load.kind = WindLoad{wind->number};
+  if (const Value* snow = value["snow"]) load.kind = SnowLoad{snow->number};
+  if (const Value* patch = value["patch"]) {
+    load.kind = PatchLoad{vec2_of(*(*patch)["center"]), vec2_of(*(*patch)["size"]), vec3_of(*(*patch)["force"])};
+  }
+  if (const Value* foil = value["foil"]; foil != nullptr && !foil_names_.empty()) check_loaded_foil(*foil, load);
+  if (const Value* region = value["region"]; region != nullptr && region->text != "all")
+    load.region = region_of(*region);
+  return load;
+}
+
+void Builder::check_loaded_foil(const Value& foil, const Load& load) {
+  const auto found = std::find(foil_names_.begin(), foil_names_.end(), foil.text);
+  if (found == foil_names_.end()) return fail_unknown_foil(foil.mark, foil.text);
+  const bool is_first = found == foil_names_.begin();
+  const bool is_last = found + 1 == foil_names_.end();
+  if (std::holds_alternative<WindLoad>(load.kind) && !is_first) {
+    const std::string weather = foil_names_.front();
+    if (!is_last) {
+      fail(foil.mark, fmt::format("wind cannot reach the middle foil `{}`; it acts on the first or the last: {}, {}",
+                                  foil.text, weather, foil_names_.back()));
+    } else if (workflow_.cushion.rigid_base) {
+      fail(foil.mark,
+           fmt::format("wind cannot reach `{}` in front of the rigid base; it acts on {}", foil.text, weather));
+    }
+  }
+  if (std::holds_alternative<SnowLoad>(load.kind) && !is_first) {
+    warn(foil.mark, fmt::format("snow on `{}`, which is not the weather side; is it meant?", foil.text));
+  }
+}
+
+Region Builder::region_of(const Value& region) {
+  if (const Value* polygon = region["polygon"]) {
+    PlanPolygon corners;
+    for (const Value& corner : polygon->items) corners.push_back(vec2_of(corner));
+    return corners;
+  }
+  const Value *x = region["x"], *y = region["y"];
+  if (x == nullptr || y == nullptr) {
+    if (x != nullptr && region.find("y") == nullptr) fail(region.mark, "`region` lacks the key `y`: [from, to]");
+    return {};
+  }
+  for (const Value* side : {x, y}) {
+    if (side->items[0].number >= side->items[1].number) fail(side->mark, "the first end must be below the second");
+  }
+  return PlanBox{{x->items[0].number, x->items[1].number}, {y->items[0].number, y->items[1].number}};
+}
+
+void Builder::check_factors(const Value* factors, const std::vector<Load>& loads) {
+  if (factors == nullptr) return;
+  std::vector<std::string> names;
+  for (const Load& load : loads) names.push_back(load.name);
+  for (const auto& [name, value] : factors->members) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    fail(value.key,
+         fmt::format("there is no load `{}`{}; loads: {}", name, suggestion(name, names), schema::joined(names)));
+  }
+}
+
+void Builder::check_gravity() {
+  const bool has_weight = std::any_of(workflow_.stages.begin(), workflow_.stages.end(), [](const StageSettings& stage) {
+    return stage.run == "inflate" || stage.run == "wind";
+  });
+  if (!workflow_.site.gravity || !has_weight) return;
+  std::set<std::string> told;
+  for (const auto& [name, mark] : material_places_) {
+    const auto found = workflow_.materials.find(name);
+    if (found == workflow_.materials.end() || found->second.density || !told.insert(name).second) continue;
+    fail(mark,
+         fmt::format("the material `{}` has no `density`, which gravity needs; add it, or say `site: {{gravity: off}}`",
+                     name));
+  }
+}
+
+} // namespace pneuma::pipeline::workflow

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "solver/path/load_path.h"
+#include "stages/common/foil_results.h"
+#include "stages/common/stage.h"
+
+namespace pneuma::stages::common {
+
+// The law of a material as the solver takes it.
+solver::material::Law law_of(const pipeline::workflow::Material& material);
+
+// Model of the state's foils, chambers and supports: references from the state (which must have them), foils' weight if
+// the site has gravity, chambers regulated at the state's pressures throughout. The stage then changes what it drives.
+// `weight_from` and `weight_to`: parts of the weight that act at load factors 0 and 1.
+solver::assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to);
+
+// Follows the path of a model and writes everything that a stage of this kind writes: steps, history.csv, state.hdf
+// with its digest, summary.json. Returns the exit code: 0, or 5 with the last good state written and marked.
+struct Drive {
+  solver::assembly::Model model;
+  State state; // what the new state takes over: mesh, foils, supports, chambers
+  bool contact_stops = true;
+  std::optional<int> steps;          // output at so many equal parts
+  double temperature_to = 0;         // K, 0: as in the state
+  std::vector<std::string> modelled; // for the summary, beside what all such stages model
+  std::vector<std::string> not_modelled;
+};
+int run_equilibrium(const Start& start, Drive drive);
+
+} // namespace pneuma::stages::common

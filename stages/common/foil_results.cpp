@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/common/foil_results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/surface.h"
+#include "solver/recovery/patch_recovery.h"
+
+namespace pneuma::stages::common {
+
+namespace {
+
+struct Pair {
+  double larger, smaller;
+};
+
+// eigenvalues of the symmetric (a, b; off c)
+Pair eigenvalues(double a, double b, double c) {
+  const double mean = 0.5 * (a + b);
+  const double radius = std::hypot(0.5 * (a - b), c);
+  return {mean + radius, mean - radius};
+}
+
+double von_mises_of(const Pair& s) {
+  return std::sqrt(s.larger * s.larger - s.larger * s.smaller + s.smaller * s.smaller);
+}
+
+// stretch - 1 from the components of C
+Pair strains_of(double c11, double c22, double c12) {
+  const Pair square = eigenvalues(c11, c22, c12);
+  return {std::sqrt(square.larger) - 1, std::sqrt(std::max(square.smaller, 0.0)) - 1};
+}
+
+void widen(Extreme& extreme, double value, const Vec3& at, bool first) {
+  if (first || value > extreme.max) {
+    extreme.max = value;
+    extreme.at = at;
+  }
+  if (first || value < extreme.min) extreme.min = value;
+}
+
+} // namespace
+
+FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
+                         std::span<const Vec3> start, std::span<const Vec3> now, std::span<const double> history) {
+  const geometry::Block& b = mesh.blocks[static_cast<std::size_t>(block)];
+  FoilResults r;
+  r.name = b.name;
+  r.block = block;
+  r.area = geometry::surface_area(mesh, b, now);
+  r.sag = geometry::deepest_point(mesh, b, now, geometry::edge_plane(mesh, now)).distance;
+
+  const std::vector<solver::element::PointState> points = solver::element::point_states(membrane, now, history);
+  std::vector<double> tensors; // cauchy 3, C 3
+  tensors.reserve(points.size() * 6);
+  r.thickness_min = membrane.thickness;
+  double total = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const solver::element::PointState& p = points[i];
+    const Vec3 c(p.deformation.col(0).squaredNorm(), p.deformation.col(1).squaredNorm(),
+                 p.deformation.col(0).dot(p.deformation.col(1)));
+    const double shear = 0.5 * (p.cauchy(0, 1) + p.cauchy(1, 0));
+    tensors.insert(tensors.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear, c[0], c[1], c[2]});
+    r.cauchy.insert(r.cauchy.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear});
+    r.thickness.push_back(membrane.thickness * p.thickness_ratio);
+    r.thickness_min = std::min(r.thickness_min, r.thickness.back());
+    const Pair stress = eigenvalues(p.cauchy(0, 0), p.cauchy(1, 1), shear);
+    const Pair strain = strains_of(c[0], c[1], c[2]);
+    const bool first = i == 0;
+    const auto gauss = [first](Extreme& e, double value) {
+      e.max_gauss = first ? value : std::max(e.max_gauss, value);
+    };
+    gauss(r.von_mises, von_mises_of(stress));
+    gauss(r.stress1, stress.larger);
+    gauss(r.stress2, stress.smaller);
+    gauss(r.strain1, strain.larger);
+    gauss(r.strain2, strain.smaller);
+    const double area = membrane.reference.area[i];
+    total += area;
+    if (stress.smaller < 0) {
+      r.compressed_area += area;
+      r.compression = std::max(r.compression, -stress.smaller);
+    }
+  }
+  r.compressed_area /= total;
+
+  const std::vector<double> nodal =
+      solver::recovery::recover_at_nodes(mesh, b, membrane.reference.rule, now, tensors, 6);
+  const std::size_t nodes = mesh.nodes.size();
+  for (std::vector<double>* field :
+       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2}) {
+    field->assign(nodes, 0.0);
+  }
+  std::vector<char> seen(nodes, 0);
+  bool first = true;
+  for (const Index node : b.connectivity) {
+    const auto k = static_cast<std::size_t>(node);
+    if (seen[k] != 0) continue;
+    seen[k] = 1;
+    const double* t = nodal.data() + 6 * k;
+    const Pair stress = eigenvalues(t[0], t[1], t[2]);
+    const Pair strain = strains_of(t[3], t[4], t[5]);
+    r.nodal_von_mises[k] = von_mises_of(stress);
+    r.nodal_stress1[k] = stress.larger;
+    r.nodal_stress2[k] = stress.smaller;
+    r.nodal_strain1[k] = strain.larger;
+    r.nodal_strain2[k] = strain.smaller;
+    widen(r.von_mises, r.nodal_von_mises[k], now[k], first);
+    widen(r.stress1, stress.larger, now[k], first);
+    widen(r.stress2, stress.smaller, now[k], first);
+    widen(r.strain1, strain.larger, now[k], first);
+    widen(r.strain2, strain.smaller, now[k], first);
+    r.max_deflection = std::max(r.max_deflection, (now[k] - start[k]).norm());
+    first = false;
+  }
+  return r;
+}
+
+void summarize(const FoilResults& r, Summary& summary) {
+  const std::string foil = "foils." + r.name + ".";
+  summary.set(foil + "area", r.area);
+  summary.set(foil + "sag", r.sag);
+  summary.set(foil + "max_deflection", r.max_deflection);
+  summary.set(foil + "thickness_min", r.thickness_min);
+  const std::pair<const char*, const Extreme*> all[] = {{"von_mises", &r.von_mises},
+                                                        {"principal_stress_1", &r.stress1},
+                                                        {"principal_stress_2", &r.stress2},
+                                                        {"principal_strain_1", &r.strain1},
+                                                        {"principal_strain_2", &r.strain2}};
+  for (const auto& [name, extreme] : all) {
+    const std::string key = foil + name + ".";
+    summary.set(key + "max", extreme->max);
+    summary.set(key + "min", extreme->min);
+    summary.set(key + "max_gauss", extreme->max_gauss);
+    summary.set(key + "at", extreme->at);
+  }
+}
+
+void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> start, State& state) {
+  using pipeline::state::Field;
+  using pipeline::state::Location;
+  const std::vector<Vec3>& now = state.mesh.nodes;
+  Field displacement{"displacement", "m", Location::point, 3, -1, {}};
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Vec3 u = now[i] - start[i];
+    displacement.values.insert(displacement.values.end(), {u.x(), u.y(), u.z()});
+  }
+  state.fields.push_back(std::move(displacement));
+
+  const auto nodal = [&](const char* name, const char* unit, std::vector<double> FoilResults::*member) {
+    Field field{name, unit, Location::point, 1, -1, std::vector<double>(now.size(), 0.0)};
+    for (const FoilResults& r : results) {
+      for (std::size_t i = 0; i < now.size(); ++i) {
+        const double value = (r.*member)[i];
+        if (std::abs(value) > std::abs(field.values[i])) field.values[i] = value;
+      }
+    }
+    state.fields.push_back(std::move(field));
+  };
+  nodal("von_mises", "Pa", &FoilResults::nodal_von_mises);
+  nodal("principal_stress_1", "Pa", &FoilResults::nodal_stress1);
+  nodal("principal_stress_2", "Pa", &FoilResults::nodal_stress2);
+  nodal("principal_strain_1", "1", &FoilResults::nodal_strain1);
+  nodal("principal_strain_2", "1", &FoilResults::nodal_strain2);
+  for (const FoilResults& r : results) {
+    state.fields.push_back({"cauchy_stress." + r.name, "Pa", Location::gauss, 3, r.block, r.cauchy});
+    state.fields.push_back({"thickness." + r.name, "m", Location::gauss, 1, r.block, r.thickness});
+  }
+}
+
+} // namespace pneuma::stages::common

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/element/membrane.h"
+#include "stages/common/stage.h"
+#include "stages/common/summary.h"
+
+namespace pneuma::stages::common {
+
+// What is reported of one foil in a state; everything recomputed from positions and material, nothing carried along.
+struct Extreme {
+  double max = 0, min = 0; // of the recovered field
+  double max_gauss = 0;    // at the stress points
+  Vec3 at = Vec3::Zero();  // current place of max
+};
+
+struct FoilResults {
+  std::string name;
+  Index block = 0;
+  double area = 0;            // m2
+  double sag = 0;             // m
+  double max_deflection = 0;  // m, against the stage's start
+  double thickness_min = 0;   // m
+  double compressed_area = 0; // part of the area whose smaller principal stress is negative
+  double compression = 0;     // Pa, largest
+  Extreme von_mises, stress1, stress2, strain1, strain2;
+
+  // recovered, per node of the mesh (0 where the foil has none): Pa, Pa, Pa, -, -
+  std::vector<double> nodal_von_mises, nodal_stress1, nodal_stress2, nodal_strain1, nodal_strain2;
+  // at the stress points: Cauchy stress (s11, s22, s12), Pa, in the carried material frame; thickness, m
+  std::vector<double> cauchy, thickness;
+};
+
+FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
+                         std::span<const Vec3> start, std::span<const Vec3> now, std::span<const double> history);
+
+// Writes the keys foils.<name>.* .
+void summarize(const FoilResults& results, Summary& summary);
+
+// Adds the fields that ParaView shows: displacement, von_mises, principal stresses and strains at the nodes (a node on
+// the rim belongs to all foils: the value of larger magnitude), stress at the stress points of each foil.
+void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> start, State& state);
+
+} // namespace pneuma::stages::common

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/common/stage.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <getopt.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/base/log.h"
+#include "pipeline/digest/digest.h"
+#include "pipeline/state/state_file.h"
+
+namespace pneuma::stages::common {
+
+namespace {
+
+constexpr const char* version = "0.1.0";
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+} // namespace
+
+Arguments read_arguments(const char* program, bool needs_input, int argc, char** argv) {
+  const std::string usage = fmt::format("usage: {} --config stage.yaml {}--out state.hdf [--threads N] [--check]",
+                                        program, needs_input ? "--in state.hdf " : "");
+  const option options[] = {{"config", required_argument, nullptr, 'c'}, {"in", required_argument, nullptr, 'i'},
+                            {"out", required_argument, nullptr, 'o'},    {"threads", required_argument, nullptr, 't'},
+                            {"check", no_argument, nullptr, 'k'},        {"help", no_argument, nullptr, 'h'},
+                            {"version", no_argument, nullptr, 'v'},      {nullptr, 0, nullptr, 0}};
+  Arguments arguments;
+  opterr = 0;
+  for (int c = 0; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
+    switch (c) {
+    case 'c':
+      arguments.config = optarg;
+      break;
+    case 'i':
+      arguments.in = optarg;
+      break;
+    case 'o':
+      arguments.out = optarg;
+      break;
+    case 't': {
+      const std::string text = optarg;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), arguments.threads);
+      if (error != std::errc() || end != text.data() + text.size() || arguments.threads < 1) {
+        throw base::InputError(fmt::format("--threads must be a whole number from 1, not `{}`\n{}", text, usage));
+      }
+      break;
+    }
+    case 'k':
+      arguments.check = true;
+      break;
+    case 'h':
+      base::say(usage);
+      std::exit(0);
+    case 'v':
+      base::say(fmt::format("{} {}", program, version));
+      std::exit(0);
+    default:
+      throw base::InputError(fmt::format("unknown option or missing value: `{}`\n{}", argv[optind - 1], usage));
+    }
+  }
+  if (optind < argc) throw base::InputError(fmt::format("unexpected argument `{}`\n{}", argv[optind], usage));
+  if (arguments.config.empty()) throw base::InputError("--config is missing\n" + usage);
+  if (arguments.out.empty() && !arguments.check) throw base::InputError("--out is missing\n" + usage);
+  if (needs_input && arguments.in.empty() && !arguments.check) throw base::InputError("--in is missing\n" + usage);
+  if (!arguments.out.empty() && arguments.out.extension() != ".hdf") {
+    throw base::InputError(
+        fmt::format("--out must end in .hdf (ParaView opens it by that), not `{}`", arguments.out.string()));
+  }
+  return arguments;
+}
+
+Start read_start(const char* kind, int argc, char** argv) {
+  Start start;
+  start.program = std::string("pneuma-") + kind;
+  const bool needs_input = std::string(kind) != "mesh";
+  start.arguments = read_arguments(start.program.c_str(), needs_input, argc, argv);
+  start.workflow = pipeline::workflow::read_stage(start.arguments.config);
+  const pipeline::workflow::StageSettings& stage = start.stage();
+  if (stage.run != kind) {
+    throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
+                                       start.arguments.config.string(), stage.run, start.program, kind));
+  }
+  if (!needs_input || start.arguments.in.empty()) return start;
+
+  start.state = pipeline::state::read_state(start.arguments.in);
+  const State& state = start.state;
+  const auto refuse = [&](const std::string& what) {
+    throw base::StateError(fmt::format("{}: {}; run the stage `{}` of this workflow again", start.arguments.in.string(),
+                                       what, stage.from));
+  };
+  if (state.provenance.stage_kind != stage.from_run) {
+    refuse(fmt::format("the state comes from a `{}` stage, `{}` wants one from `{}`", state.provenance.stage_kind,
+                       stage.id, stage.from_run));
+  }
+  if (!state.provenance.converged) {
+    refuse(fmt::format("the state is that of a stage that did not reach its end ({})", state.provenance.verdict));
+  }
+  const pipeline::workflow::Cushion& cushion = start.workflow.cushion;
+  const std::size_t blocks = cushion.foils.size() + (cushion.rigid_base ? 1 : 0);
+  bool same = state.mesh.blocks.size() == blocks && state.chambers.size() == cushion.chambers.size();
+  for (std::size_t i = 0; same && i < cushion.foils.size(); ++i)
+    same = state.mesh.blocks[i].name == cushion.foils[i].name;
+  for (std::size_t i = 0; same && i < cushion.chambers.size(); ++i)
+    same = state.chambers[i].name == cushion.chambers[i].name;
+  if (!same) refuse("the state holds other foils or chambers than the workflow");
+  return start;
+}
+
+pipeline::state::Provenance provenance(const Start& start) {
+  pipeline::state::Provenance p;
+  p.program = start.program + " " + version;
+  p.stage_kind = start.stage().run;
+  p.stage_id = start.stage().id;
+  if (!start.arguments.in.empty()) p.inputs["state"] = pipeline::digest::sha256_of_file(start.arguments.in);
+  p.settings = text_of(start.arguments.config);
+  return p;
+}
+
+std::string number(double value) {
+  return fmt::format("{:.5g}", value);
+}
+
+std::string place(const Workflow& workflow, const std::string& key) {
+  const auto found = workflow.origins.find(key);
+  return found == workflow.origins.end() ? "" : to_string(found->second) + ": ";
+}
+
+} // namespace pneuma::stages::common

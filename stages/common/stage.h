@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "pipeline/state/state.h"
+#include "pipeline/workflow/settings.h"
+
+namespace pneuma::stages::common {
+
+using base::Index;
+using base::Vec3;
+using base::VecX;
+using pipeline::state::State;
+using pipeline::workflow::Workflow;
+
+// The command line of every stage: --config stage.yaml [--in a.hdf] --out b.hdf [--threads N] [--check].
+struct Arguments {
+  std::filesystem::path config, in, out;
+  int threads = 1;
+  bool check = false; // read and check everything, compute nothing
+};
+
+// Throws InputError; prints help or version and exits for --help and --version.
+Arguments read_arguments(const char* program, bool needs_input, int argc, char** argv);
+
+// What a stage starts from.
+struct Start {
+  std::string program; // "pneuma-inflate"
+  Arguments arguments;
+  Workflow workflow; // one stage in it
+  State state;       // of --in; empty for the mesh stage
+
+  const pipeline::workflow::StageSettings& stage() const { return workflow.stages.front(); }
+};
+
+// Reads the command line, stage.yaml and the input state, and checks that they belong together: the stage is of this
+// kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
+Start read_start(const char* kind, int argc, char** argv);
+
+// Provenance of the state that this stage writes, all but its verdict.
+pipeline::state::Provenance provenance(const Start& start);
+
+// "400 Pa" style number for messages: three to six significant digits.
+std::string number(double value);
+
+// Place of a key in the user's file, for messages: "cushion.yaml:14:22: ", or "" if the user did not write it.
+std::string place(const Workflow& workflow, const std::string& key);
+
+} // namespace pneuma::stages::common

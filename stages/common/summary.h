@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/base/types.h"
+
+namespace pneuma::stages::common {
+
+using base::Vec3;
+
+// summary.json: the result keys of the workflow contract, SI units. A key that was not computed is absent.
+class Summary {
+public:
+  Summary();
+  ~Summary();
+  Summary(const Summary&) = delete;
+  Summary& operator=(const Summary&) = delete;
+
+  // `path` is dotted: "chambers.main.volume"; names may not hold dots.
+  void set(const std::string& path, double value);
+  void set(const std::string& path, int value);
+  void set(const std::string& path, bool value);
+  void set(const std::string& path, const std::string& value);
+  void set(const std::string& path, const char* value) { set(path, std::string(value)); }
+  void set(const std::string& path, const Vec3& value);
+  void append(const std::string& path, const std::string& value); // to a list of texts
+
+  // Written to a temporary file and renamed; throws Error with the system's reason.
+  void write(const std::filesystem::path& file) const;
+
+private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+// history.csv: one row per accepted step, written and flushed at once. Columns are fixed by the first row.
+class History {
+public:
+  explicit History(std::filesystem::path file);
+  using Row = std::vector<std::pair<std::string, double>>; // column -> value, SI
+  void add(const Row& row);
+
+private:
+  std::filesystem::path file_;
+  bool started_ = false;
+};
+
+double peak_memory(); // bytes
+
+// Seconds since it was made.
+class Clock {
+public:
+  Clock();
+  double seconds() const;
+
+private:
+  double start_;
+};
+
+} // namespace pneuma::stages::common

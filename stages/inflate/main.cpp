@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pneuma-inflate: from a form-found or flat cushion to its inflated state under regulated air and its own weight.
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "solver/material/prestress.h"
+#include "stages/common/equilibrium.h"
+
+namespace pneuma::stages::inflate {
+
+namespace {
+
+namespace workflow = pipeline::workflow;
+using common::Vec3;
+
+// The predeformation with which a foil carries `force` [point][3], N/m, where it lies now (numerics 11).
+std::vector<double> predeformation(const common::Start& start, std::size_t foil, std::span<const double> force) {
+  const workflow::FoilSettings& settings = start.workflow.cushion.foils[foil];
+  const solver::material::Law law = common::law_of(start.workflow.materials.at(settings.material));
+  std::vector<double> result;
+  Vec3 last_force = Vec3::Constant(-1);
+  Vec3 last = Vec3::Zero();
+  for (std::size_t i = 0; i + 3 <= force.size(); i += 3) {
+    const Vec3 n(force[i], force[i + 1], force[i + 2]);
+    if (n != last_force) { // the same everywhere in an isotropic film
+      const auto found = solver::material::predeformation(law, settings.thickness, n);
+      if (!found) {
+        throw base::InputError(fmt::format("{}: foil `{}` cannot carry a prestress of {} N/m: lower it, or take a "
+                                           "thicker or stiffer foil",
+                                           to_string(settings.mark), settings.name, common::number(n.maxCoeff())));
+      }
+      last_force = n;
+      last = *found;
+    }
+    result.insert(result.end(), {last[0], last[1], last[2]});
+  }
+  return result;
+}
+
+int run(int argc, char** argv) {
+  const common::Start start = common::read_start("inflate", argc, argv);
+  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
+  const auto& settings = std::get<workflow::InflateSettings>(start.stage().settings);
+  common::Drive drive;
+  drive.state = start.state;
+  drive.contact_stops = settings.contact_stops;
+  drive.steps = settings.control.steps;
+
+  const bool from_form = start.stage().from_run == "formfind";
+  const bool prestressed = from_form && settings.reference == workflow::Reference::prestressed;
+  for (std::size_t b = 0; b < start.workflow.cushion.foils.size(); ++b) {
+    pipeline::state::Foil& foil = drive.state.foils[b];
+    if (prestressed) {
+      foil.predeformation = predeformation(start, b, foil.prestress);
+    } else if (!from_form) {
+      foil.reference =
+          solver::element::corner_coordinates(drive.state.mesh.blocks[b].connectivity, drive.state.mesh.nodes);
+      if (!settings.prestress.empty()) {
+        const double n = settings.prestress.at(start.workflow.cushion.foils[b].name);
+        const std::size_t points =
+            foil.reference.size() /
+            (3 * static_cast<std::size_t>(geometry::nodes_per_element(drive.state.mesh.element))) *
+            geometry::stress_rule(drive.state.mesh.element, drive.state.stress_rule).size();
+        std::vector<double> force;
+        for (std::size_t i = 0; i < points; ++i) force.insert(force.end(), {n, n, 0});
+        foil.predeformation = predeformation(start, b, force);
+      }
+    }
+    foil.prestress.clear(); // from here on the material carries it
+  }
+  drive.model = common::make_model(start, drive.state, 0, 1);
+  for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
+    pipeline::state::Chamber& chamber = drive.state.chambers[c];
+    if (!prestressed) chamber.gauge_pressure = 0; // without stress nothing holds a pressure yet
+    drive.model.chambers[c].gas =
+        solver::chamber::Regulated{chamber.gauge_pressure, settings.gauge_pressure.at(chamber.name)};
+  }
+  drive.modelled.emplace_back("regulated air");
+  return common::run_equilibrium(start, std::move(drive));
+}
+
+} // namespace
+
+} // namespace pneuma::stages::inflate
+
+int main(int argc, char** argv) {
+  return pneuma::base::guarded_main("pneuma-inflate", pneuma::stages::inflate::run, argc, argv);
+}

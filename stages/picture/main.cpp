@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cstdio>
+#include <string_view>
+
+#include "geometry/base/errors.h"
+#include "geometry/base/types.h"
+#include "pipeline/state/state_file.h"
+#include "stages/picture/draw.h"
+
+namespace pneuma::stages::picture {
+
+int run(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "--help") {
+      std::puts(usage());
+      return 0;
+    }
+  }
+  const Options options = parse(argc, argv);
+  draw(pipeline::state::read_state(options.state), options);
+  return 0;
+}
+
+} // namespace pneuma::stages::picture
+
+int main(int argc, char** argv) {
+  return pneuma::base::guarded_main("pneuma-picture", pneuma::stages::picture::run, argc, argv);
+}

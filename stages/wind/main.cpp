@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pneuma-wind: from an inflated cushion to its state under wind, snow and patch loads, with the air in its chambers
+// taking part as the load case says.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "solver/load/loads.h"
+#include "stages/common/equilibrium.h"
+
+namespace pneuma::stages::wind {
+
+namespace {
+
+namespace workflow = pipeline::workflow;
+using common::Index;
+using common::Vec3;
+using common::VecX;
+
+geometry::PlanRegion region_of(const workflow::Region& region) {
+  if (const auto* box = std::get_if<workflow::PlanBox>(&region)) {
+    return geometry::PlanRectangle{{box->x[0], box->y[0]}, {box->x[1], box->y[1]}};
+  }
+  if (const auto* polygon = std::get_if<workflow::PlanPolygon>(&region)) return geometry::PlanPolygon{*polygon};
+  return geometry::WholePlan{};
+}
+
+void add_load(const workflow::Load& load, const common::Start& start, solver::assembly::Model& model) {
+  const geometry::Mesh& mesh = start.state.mesh;
+  const std::vector<workflow::FoilSettings>& foils = start.workflow.cushion.foils;
+  Index block = 0;
+  while (foils[static_cast<std::size_t>(block)].name != load.foil) ++block;
+  const geometry::Block& foil = mesh.blocks[static_cast<std::size_t>(block)];
+  const Vec3 up = start.workflow.site.up.normalized();
+  const auto quadrature = [&](const geometry::PlanRegion& region) {
+    return geometry::region_quadrature(mesh, foil, mesh.nodes, region);
+  };
+
+  if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
+    // the first foil shows its weather face (normal outwards), the last of several its room face
+    const double along_normal = (block == 0 ? -1 : 1) * load.factor * wind->pressure;
+    if (std::holds_alternative<std::monostate>(load.region)) {
+      model.face_pressure[static_cast<std::size_t>(block)][1] += along_normal;
+    } else {
+      model.zones.push_back(
+          solver::load::pressure_zone(mesh, block, quadrature(region_of(load.region)), {0.0, along_normal}));
+    }
+  } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
+    solver::load::add_plan_load(mesh, block, mesh.nodes, quadrature(region_of(load.region)),
+                                -load.factor * snow->weight * up, model.dead_to);
+  } else {
+    const auto& patch = std::get<workflow::PatchLoad>(load.kind);
+    if (!std::holds_alternative<std::monostate>(load.region)) {
+      throw base::InputError(
+          fmt::format("{}: load `{}`: a patch says its own place with center and size; region does not go with it",
+                      to_string(load.mark), load.name));
+    }
+    const geometry::RegionQuadrature inside =
+        quadrature(geometry::PlanRectangle{patch.center - 0.5 * patch.size, patch.center + 0.5 * patch.size});
+    const double area = geometry::plan_area(mesh, foil, mesh.nodes, inside);
+    const double wanted = patch.size.x() * patch.size.y();
+    if (area < (1 - 1e-6) * wanted) {
+      throw base::InputError(
+          fmt::format("{}: load `{}`: only {} of the patch's {} m2 lie on foil `{}`: move it or make "
+                      "it smaller",
+                      to_string(load.mark), load.name, common::number(area), common::number(wanted), foil.name));
+    }
+    solver::load::add_plan_load(mesh, block, mesh.nodes, inside, load.factor / area * patch.force, model.dead_to);
+  }
+}
+
+solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, std::string& text) {
+  if (const auto* closed = std::get_if<workflow::ClosedGas>(&gas)) {
+    solver::chamber::Closed law;
+    law.kappa = closed->kappa;
+    law.absolute0 = chamber.gauge_pressure + chamber.ambient_pressure;
+    law.volume0 = chamber.volume;
+    law.temperature0 = chamber.temperature;
+    law.temperature = closed->temperature.value_or(chamber.temperature);
+    law.ambient_from = chamber.ambient_pressure;
+    law.ambient_to = closed->ambient_pressure.value_or(chamber.ambient_pressure);
+    text = fmt::format("chamber {}: closed air, kappa {}, absolute pressure {} Pa at the start", chamber.name,
+                       law.kappa, common::number(law.absolute0));
+    if (!(law.absolute0 > 0) || !(law.volume0 > 0)) {
+      throw base::InputError(
+          fmt::format("chamber `{}` cannot be closed: it holds {} m3 at an absolute pressure of {} Pa", chamber.name,
+                      common::number(law.volume0), common::number(law.absolute0)));
+    }
+    return law;
+  }
+  if (const auto* volume = std::get_if<workflow::VolumeGas>(&gas)) {
+    text = fmt::format("chamber {}: prescribed volume", chamber.name);
+    return solver::chamber::PrescribedVolume{chamber.volume, volume->volume};
+  }
+  text = fmt::format("chamber {}: regulated air", chamber.name);
+  const auto& regulated = std::get<workflow::RegulatedGas>(gas);
+  return solver::chamber::Regulated{chamber.gauge_pressure, regulated.gauge_pressure.value_or(chamber.gauge_pressure)};
+}
+
+int run(int argc, char** argv) {
+  const common::Start start = common::read_start("wind", argc, argv);
+  if (start.arguments.in.empty()) return 0; // --check
+  const auto& settings = std::get<workflow::WindSettings>(start.stage().settings);
+  common::Drive drive;
+  drive.state = start.state;
+  drive.contact_stops = settings.contact_stops;
+  drive.steps = settings.control.steps;
+  drive.model = common::make_model(start, drive.state, 1, 1);
+  for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
+    std::string text;
+    drive.model.chambers[c].gas = gas_of(settings.gas.at(drive.state.chambers[c].name), drive.state.chambers[c], text);
+    drive.modelled.push_back(text);
+  }
+  for (const workflow::Load& load : settings.loads) {
+    add_load(load, start, drive.model);
+    constexpr const char* kinds[] = {"wind as a pressure that follows the foil", "snow as a dead load on the plan",
+                                     "patch as a dead load on the plan"};
+    drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
+  }
+  return common::run_equilibrium(start, std::move(drive));
+}
+
+} // namespace
+
+} // namespace pneuma::stages::wind
+
+int main(int argc, char** argv) {
+  return pneuma::base::guarded_main("pneuma-wind", pneuma::stages::wind::run, argc, argv);
+}

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <ostream>
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/pipeline/workflow/example.h"
+
+namespace pneuma::pipeline::workflow {
+namespace {
+
+// What is changed in the example, and the messages in the order of the file. `@` marks the place of each message.
+struct Bad {
+  const char* claim;
+  const char* before;
+  const char* after;
+  std::vector<const char*> messages;
+};
+
+std::ostream& operator<<(std::ostream& out, const Bad& bad) {
+  return out << bad.claim;
+}
+
+class BadWorkflow : public testing::TestWithParam<Bad> {};
+
+// Takes the marks out of the text; each becomes "line:column".
+std::vector<std::string> take_places(std::string& text) {
+  std::vector<std::string> places;
+  std::string clean;
+  int line = 1, column = 1;
+  for (const char c : text) {
+    if (c == '@') {
+      places.push_back(std::to_string(line) + ":" + std::to_string(column));
+      continue;
+    }
+    clean += c;
+    column = c == '\n' ? 1 : column + 1;
+    line += c == '\n' ? 1 : 0;
+  }
+  text = clean;
+  return places;
+}
+
+TEST_P(BadWorkflow, IsToldWhatAndWhere) {
+  const Bad& bad = GetParam();
+  std::string text = replaced(example, bad.before, bad.after);
+  const std::vector<std::string> places = take_places(text);
+  ASSERT_EQ(places.size(), bad.messages.size());
+  const Folder folder;
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  std::string all;
+  for (const Problem& problem : result.problems) all += to_string(problem) + "\n";
+  ASSERT_EQ(result.problems.size(), places.size()) << all;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Problem& problem = result.problems[i];
+    EXPECT_EQ(std::to_string(problem.mark.line) + ":" + std::to_string(problem.mark.column), places[i]) << all;
+    EXPECT_THAT(to_string(problem), testing::HasSubstr(bad.messages[i]));
+    EXPECT_TRUE(problem.error);
+  }
+}
+
+constexpr const char* foil = "{name: upper, material: etfe, thickness: 250 um}";
+constexpr const char* mesh = "mesh: {element: T6, size: 0.15 m}";
+constexpr const char* form =
+    "{run: formfind, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 kN/m}}";
+constexpr const char* inflated =
+    "{run: inflate, from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, reference: prestressed}";
+constexpr const char* load = "{name: suction, foil: upper, wind: -0.6 kPa}";
+
+const Bad cases[] = {
+    {"UnknownKey",
+     "thickness: 250 um",
+     "@thicknes: 250 um, thickness: 250 um",
+     {"unknown key `thicknes` in entry 1 of `foils`; did you mean `thickness`?; known: name, material, thickness, "
+      "warp"}},
+    {"UnknownKeyAtTheTop",
+     "name: Test cushion",
+     "@nmae: Test cushion",
+     {"unknown key `nmae` in the file; did you mean `name`?"}},
+    {"MissingKey", foil, "@{name: upper, material: etfe}", {"entry 1 of `foils` lacks the key `thickness`"}},
+    {"DuplicateKey",
+     mesh,
+     "mesh: {element: T6, size: 0.15 m, @size: 0.2 m}",
+     {"the key `size` stands here a second time"}},
+    {"DuplicateStage", "  inflated:", "  @form: {}\n  inflated:", {"the key `form` stands here a second time"}},
+    {"WrongDimension",
+     "thickness: 250 um",
+     "thickness: @250 kPa",
+     {"`250 kPa` has a unit of another kind; expected a length"}},
+    {"UnknownUnit", "thickness: 250 um", "thickness: @250 mikron", {"has the unknown unit `mikron`"}},
+    {"BareNumber",
+     "thickness: 250 um",
+     "thickness: @0.00025",
+     {"`thickness`: `0.00025` has no unit; expected a length such as `250 um`"}},
+    {"NoNumber", "size: 0.15 m", "size: @small", {"`small` does not begin with a number"}},
+    {"Reciprocal", "size: 0.15 m", "size: @5 1/m", {"`5 1/m` has a unit of another kind"}},
+    {"Coulomb", "cushion:\n", "site: {temperature: @23 C}\ncushion:\n", {"the unit of temperature is degC or K"}},
+    {"UnitOnANumber", "nu: 0.45", "nu: @0.45 m", {"`nu` must be a plain number, not `0.45 m`"}},
+    {"NegativeThickness", "thickness: 250 um", "thickness: @-250 um", {"`thickness` must be positive, not -250 um"}},
+    {"PoissonsRatioOutOfRange", "nu: 0.45", "nu: @0.6", {"`nu` must be above -1, up to 0.5, not 0.6"}},
+    {"ZeroYoungsModulus", "E: 900 MPa", "E: @0 MPa", {"`E` must be positive, not 0 MPa"}},
+    {"UnknownMaterial",
+     foil,
+     "{name: upper, material: @etef, thickness: 250 um}",
+     {"there is no material `etef`; did you mean `etfe`?; known: etfe"}},
+    {"MissingMaterialsFile",
+     "materials:\n  etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\n",
+     "materials: @nowhere.yaml\n",
+     {"nowhere.yaml` cannot be read: No such file or directory"}},
+    {"DuplicateFoil",
+     "thickness: 200 um}",
+     "thickness: 200 um}\n    - {name: @upper, material: etfe, thickness: 1 mm}",
+     {"a second foil `upper`: every foil needs a name of its own"}},
+    {"ReservedFoilName",
+     "thickness: 200 um}",
+     "thickness: 200 um}\n    - {name: @all, material: etfe, thickness: 1 mm}",
+     {"a foil cannot be called `all`"}},
+    {"UnknownFoilOfAChamber",
+     "[upper, middle]",
+     "[@uper, middle]",
+     {"there is no foil `uper`; did you mean `upper`?; foils: upper, middle, lower"}},
+    {"ChamberBetweenNoNeighbours",
+     "[upper, middle]",
+     "@[upper, lower]",
+     {"`upper` and `lower` are no neighbours; from the weather side inwards: upper, middle, lower"}},
+    {"TwoChambersInOneGap",
+     "[middle, lower]",
+     "@[middle, upper]",
+     {"between these foils lies the chamber `top` already"}},
+    {"ChamberToAMissingBase", "[middle, lower]", "[lower, @base]", {"the cushion has no base; say `base: rigid`"}},
+    {"ChamberWithThreeWalls", "[upper, middle]", "@[upper, middle, lower]", {"`between` must have 2 entries, not 3"}},
+    {"DuplicateChamber",
+     "between: [middle, lower]}",
+     "between: [middle, lower]}\n    - {name: @top, between: [lower, base]}\n  base: rigid",
+     {"a second chamber `top`: every chamber needs a name of its own"}},
+    {"ConnectedChambers",
+     "between: [upper, middle]}",
+     "between: [upper, middle], @connected_to: bottom}",
+     {"`connected_to` is not available yet"}},
+    {"UnknownEdge",
+     "{all: clamped}",
+     "{all: clamped, @suoth: clamped}",
+     {"the plan has no edge `suoth`; did you mean `south`?; its edges: south, east, north, west"}},
+    {"FreeEdge",
+     "{all: clamped}",
+     "{south: @free}",
+     {"`south`: `free` is not available yet; clamped edges are available"}},
+    {"UnknownShape",
+     "shape: rectangle",
+     "shape: @rectangel",
+     {"`shape` must be one of: rectangle, circle, triangle, not `rectangel`; did you mean `rectangle`?"}},
+    {"PolygonPlan",
+     "{shape: rectangle, length: 6 m, width: 3 m}",
+     "{shape: @regular_polygon, sides: 6, radius: 2 m}",
+     {"`shape: regular_polygon` is not available yet; rectangle, circle and triangle are available"}},
+    {"TriangleWithoutSize",
+     "{shape: rectangle, length: 6 m, width: 3 m}",
+     "@{shape: triangle}",
+     {"`plan` needs exactly one of: side, points; it has none"}},
+    {"FlatTriangle",
+     "{shape: rectangle, length: 6 m, width: 3 m}",
+     "{shape: triangle, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
+     {"the three `points` lie on a line"}},
+    {"SizeAndDivisions",
+     mesh,
+     "mesh: @{size: 0.15 m, divisions: 4}",
+     {"`mesh` needs exactly one of: size, divisions; it has 2"}},
+    {"NeitherSizeNorDivisions",
+     mesh,
+     "mesh: @{element: T6}",
+     {"`mesh` needs exactly one of: size, divisions; it has none"}},
+    {"FractionalDivisions", mesh, "mesh: {divisions: @4.5}", {"`divisions` must be a whole number, not `4.5`"}},
+    {"NoDivisions", mesh, "mesh: {divisions: [4, @0]}", {"entry 2 of `divisions` must be from 1 to 10000, not 0"}},
+    {"ReducedRuleOnT6",
+     mesh,
+     "mesh: {element: T6, size: 0.15 m, stress_rule: @reduced}",
+     {"the reduced rule is for Q9, not T6; allowed: full"}},
+    {"UnknownElement",
+     "element: T6",
+     "element: @T7",
+     {"`element` must be one of: T3, T6, Q4, Q9, not `T7`; did you mean `T3`?"}},
+    {"UnknownStageInFrom",
+     "from: form",
+     "from: @from",
+     {"there is no stage `from`; did you mean `form`?; stages: mesh, form, gust"}},
+    {"Circle",
+     form,
+     "{run: formfind, from: @gust, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 kN/m}}",
+     {"`from` goes in a circle: form <- gust <- inflated <- form"}},
+    {"StageCalledMesh",
+     "  inflated:",
+     "  @mesh: {run: wind, from: inflated}\n  inflated:",
+     {"a stage cannot be called `mesh`"}},
+    {"WindFromMesh",
+     "from: inflated",
+     "from: @mesh",
+     {"`run: wind` cannot start from `mesh` (`run: mesh`); it starts from: inflate"}},
+    {"WindFromWind",
+     "  gust:",
+     "  more: {run: wind, from: @gust}\n  gust:",
+     {"`run: wind` from a stage of `run: wind` is not available yet; it starts from: inflate"}},
+    {"FormfindFromInflate",
+     form,
+     "{run: formfind, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 kN/m}}\n"
+     "  again: {run: formfind, from: @inflated, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 "
+     "kN/m}}",
+     {"`run: formfind` cannot start from `inflated` (`run: inflate`); it starts from: mesh"}},
+    {"InflateFromPatterns",
+     "  gust:",
+     "  strips: {run: @pattern, from: form}\n  again: {run: inflate, from: strips, gauge_pressure: {top: 1 Pa, bottom: "
+     "1 Pa}}\n  gust:",
+     {"`run: pattern` is not available yet"}},
+    {"PatternStage",
+     "  gust:",
+     "  strips: {run: @pattern, from: form, strips_per_foil: 6}\n  gust:",
+     {"`run: pattern` is not available yet; formfind, inflate and wind are available"}},
+    {"UnknownRun",
+     "run: wind",
+     "run: @wnid",
+     {"`run` must be one of: formfind, inflate, wind, not `wnid`; did you mean `wind`?"}},
+    {"InflateWithoutReference",
+     inflated,
+     "@{run: inflate, from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}}",
+     {"from a formfind stage, `reference` must say what the found form is: prestressed or stress_free"}},
+    {"PrestressFromAFoundForm",
+     inflated,
+     "{run: inflate, from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, reference: stress_free, @prestress: "
+     "{all: 1 kN/m}}",
+     {"`prestress` is for a start from mesh"}},
+    {"ReferenceFromMesh",
+     inflated,
+     "{run: inflate, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, @reference: prestressed}",
+     {"`reference` is for a start from a formfind stage"}},
+    {"PrestressAndStress",
+     form,
+     "@{run: formfind, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 1 kN/m}, stress: "
+     "{all: 4 MPa}}",
+     {"`form` needs exactly one of: prestress, stress, sag, volume; it has 2"}},
+    {"SagTarget",
+     form,
+     "{run: formfind, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, @sag: {all: 0.3 m}}",
+     {"`sag` is not available yet; an isotropic prestress (or stress) per foil is available"}},
+    {"WarpAndWeft",
+     "{all: 0.89 kN/m}",
+     "{all: @{warp: 1 kN/m, weft: 2 kN/m}}",
+     {"`all` as a map is not available yet; an isotropic prestress"}},
+    {"FoilWithoutPrestress",
+     "{all: 0.89 kN/m}",
+     "@{upper: 1 kN/m, lower: 1 kN/m}",
+     {"`prestress` says nothing about the foil `middle`; name it, or use `all`"}},
+    {"PrestressOfAnUnknownFoil",
+     "{all: 0.89 kN/m}",
+     "{all: 1 kN/m, @lwoer: 2 kN/m}",
+     {"there is no foil `lwoer`; did you mean `lower`?"}},
+    {"PressureOfAnUnknownChamber",
+     "{top: 400 Pa, bottom: 400 Pa}",
+     "{top: 400 Pa, bottom: 400 Pa, @buttom: 1 Pa}",
+     {"there is no chamber `buttom`; did you mean `bottom`?; chambers: top, bottom"}},
+    {"ChamberWithoutPressure",
+     "{top: 400 Pa, bottom: 400 Pa}",
+     "@{top: 400 Pa}",
+     {"`gauge_pressure` says nothing about the chamber `bottom`"}},
+    {"WindOnAMiddleFoil",
+     load,
+     "{name: suction, foil: @middle, wind: -0.6 kPa}",
+     {"wind cannot reach the middle foil `middle`; it acts on the first or the last: upper, lower"}},
+    {"LoadOnAnUnknownFoil",
+     load,
+     "{name: suction, foil: @uper, wind: -0.6 kPa}",
+     {"there is no foil `uper`; did you mean `upper`?"}},
+    {"LoadOfTwoKinds",
+     load,
+     "@{name: suction, foil: upper, wind: -0.6 kPa, snow: 1 kPa}",
+     {"needs exactly one of: wind, snow, patch; it has 2"}},
+    {"HalfARegion",
+     load,
+     "{name: suction, foil: upper, wind: -0.6 kPa, region: @{x: [0 m, 1 m]}}",
+     {"`region` lacks the key `y`: [from, to]"}},
+    {"EmptyRegion",
+     load,
+     "{name: suction, foil: upper, wind: -0.6 kPa, region: {x: @[1 m, 0 m], y: [0 m, 1 m]}}",
+     {"the first end must be below the second"}},
+    {"RegionPolygonOfTwoCorners",
+     load,
+     "{name: suction, foil: upper, wind: -0.6 kPa, region: {polygon: @[[0 m, 0 m], [1 m, 0 m]]}}",
+     {"`polygon` must have at least 3 entries, not 2"}},
+    {"FactorOfAnUnknownLoad",
+     "    loads:",
+     "    factors: {@suctoin: 2}\n    loads:",
+     {"there is no load `suctoin`; did you mean `suction`?"}},
+    {"GasOfAnUnknownChamber", "gas: {top:", "gas: {@tpo:", {"there is no chamber `tpo`; did you mean `top`?"}},
+    {"TemperatureWithKappa",
+     "kappa: 1.4}",
+     "kappa: 1.4, temperature: @30 degC}",
+     {"`temperature` is for kappa 1, not 1.4"}},
+    {"UnknownGasLaw",
+     "law: closed",
+     "law: @close",
+     {"`law` must be one of: regulated, closed, volume, not `close`; did you mean `closed`?"}},
+    {"ArcLength",
+     "    loads:",
+     "    control: {type: @arc_length}\n    loads:",
+     {"`type: arc_length` is not available yet; load control is available"}},
+    {"Duration", "    loads:", "    @duration: 5 s\n    loads:", {"`duration` is not available yet"}},
+    {"History", "    loads:", "    @history: [{time: 5 s, factor: 1}]\n    loads:", {"`history` is not available yet"}},
+    {"Combinations",
+     "stages:\n",
+     "@combinations: {a: {from: inflated}}\nstages:\n",
+     {"`combinations` is not available yet"}},
+    {"Accuracy", "stages:\n", "@accuracy: {deflection: 1 %}\nstages:\n", {"`accuracy` is not available yet"}},
+    {"OtherLaw",
+     "law: elastic",
+     "law: @ogden",
+     {"`law: ogden` is not available yet; the isotropic elastic law is available"}},
+    {"OrthotropicLaw",
+     "E: 900 MPa",
+     "@E1: 900 MPa",
+     {"`E1` is not available yet; the isotropic elastic law is available"}},
+    {"TensionField", "nu: 0.45", "nu: 0.45, tension_field: @true", {"`tension_field: on` is not available yet"}},
+    {"GravityWithoutDensity",
+     ", density: 1750 kg/m3}\ncushion:\n  plan: {shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n "
+     " foils:\n"
+     "    - {name: upper, material: etfe",
+     "}\ncushion:\n  plan: {shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n  foils:\n"
+     "    - {name: upper, material: @etfe",
+     {"the material `etfe` has no `density`, which gravity needs; add it, or say `site: {gravity: off}`"}},
+    {"VersionOfTheFormat", "pneuma: 1", "pneuma: @2", {"`pneuma` must be 1, the version this program reads, not 2"}},
+    {"Nothing", "name: Test cushion", "@name:", {"`name` must be a text, not nothing"}},
+    {"ListForAMap",
+     mesh,
+     "mesh: @[T6]",
+     {"`mesh` must be a map with the keys element, size, divisions, pattern, stress_rule, not a list"}},
+    {"FlagThatIsNone",
+     "cushion:\n",
+     "site: {gravity: @maybe}\ncushion:\n",
+     {"`gravity` must be on or off, not `maybe`"}},
+    {"ZeroUp", "cushion:\n", "site: {up: @[0, 0, 0]}\ncushion:\n", {"`up` must not be zero"}},
+    {"StageIdWithABlank", "  gust:", "  @my gust:", {"`my gust` is no name: letters, digits, _ and - are allowed"}},
+    {"Tolerance",
+     "    loads:",
+     "    options: {tolerance: @2}\n    loads:",
+     {"`tolerance` must be between 0 and 1, not 2"}},
+    {"AllAtOnce",
+     "thickness: 250 um}\n    - {name: middle, material: etfe, thickness: 100 um}",
+     "thickness: @250 kPa}\n    - {name: middle, material: @etff, @colour: red, thickness: @-1 mm}",
+     {"has a unit of another kind", "there is no material `etff`", "unknown key `colour`", "must be positive"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Cases, BadWorkflow, testing::ValuesIn(cases),
+                         [](const auto& used) { return std::string(used.param.claim); });
+
+} // namespace
+} // namespace pneuma::pipeline::workflow

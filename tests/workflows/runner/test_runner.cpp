@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runner with stages that are small shell scripts: they copy their settings and their input to their state.
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <sstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/unit/pipeline/workflow/example.h"
+
+namespace pneuma::pipeline::workflow {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::UnorderedElementsAre;
+
+// `fail-ID`: ends with the code in it; `slow-ID`: works for a minute; `meet-ID`: needs the stage named in it at its
+// side.
+constexpr const char* script = R"sh(#!/bin/sh
+while [ $# -gt 0 ]; do
+  case "$1" in --config) config=$2 ;; --in) in=$2 ;; --out) out=$2 ;; --threads) threads=$2 ;; esac
+  shift 2
+done
+here=$(dirname "$0")
+id=$(basename "$(dirname "$config")")
+echo "$id" >>"$here/runs"
+echo "threads $threads"
+echo $$ >"$here/started-$id"
+[ -f "$here/slow-$id" ] && exec sleep 60
+if [ -f "$here/meet-$id" ]; then
+  for i in $(seq 20); do [ -f "$here/started-$(cat "$here/meet-$id")" ] && met=yes && break; sleep 0.05; done
+  [ -n "$met" ] || exit 9
+fi
+[ -f "$here/fail-$id" ] && echo "a complaint" >&2 && exit "$(cat "$here/fail-$id")"
+{ sed '/^origin:/,$d' "$config"; if [ -n "$in" ]; then cat "$in"; fi; } >"$out.new"
+sha256sum <"$out.new" | cut -c1-64 >"$out.sha256"
+mv "$out.new" "$out"
+echo '{"verdict": "fine", "chambers": {"top": {"gauge_pressure": 400, "volume": 3.25}}}' >"$(dirname "$out")/summary.json"
+)sh";
+
+struct Outcome {
+  int code = 0;
+  std::string text;
+};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+bool happens(const std::function<bool()>& condition) {
+  for (int i = 0; i < 400; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  }
+  return false;
+}
+
+class RunnerTest : public testing::Test {
+protected:
+  RunnerTest() {
+    for (const char* run : {"mesh", "formfind", "inflate", "wind"}) {
+      const auto file = folder.write(fmt::format("bin/pneuma-{}", run), script);
+      std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    }
+    write(example + "  calm: {run: wind, from: inflated}\n");
+  }
+
+  void write(const std::string& text) {
+    workflow = text;
+    folder.write("w.yaml", text);
+  }
+  void change(const std::string& before, const std::string& after) { write(replaced(workflow, before, after)); }
+  void arm(const std::string& what, const std::string& text = "") const { folder.write("bin/" + what, text); }
+  void disarm(const std::string& what) const { std::filesystem::remove(folder.path() / "bin" / what); }
+  std::filesystem::path out(const std::string& name) const { return folder.path() / "out" / "w" / name; }
+
+  pid_t start(std::vector<std::string> words) const {
+    words.insert(words.begin(), PNEUMA_PROGRAM);
+    const pid_t pid = fork();
+    if (pid != 0) return pid;
+    const std::string log = folder.path() / "output", stages = folder.path() / "bin";
+    const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    setenv("PNEUMA_STAGES", stages.c_str(), 1);
+    if (chdir(folder.path().c_str()) != 0) _exit(126);
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    execv(pointers[0], pointers.data());
+    _exit(127);
+  }
+
+  Outcome end_of(pid_t pid) const {
+    int status = 0;
+    waitpid(pid, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), text_of(folder.path() / "output")};
+  }
+
+  Outcome pneuma(const std::vector<std::string>& words) const {
+    std::filesystem::remove(folder.path() / "bin" / "runs");
+    return end_of(start(words));
+  }
+
+  // Stages that ran in the last call, in the order of their start.
+  std::vector<std::string> ran() const {
+    std::istringstream lines(text_of(folder.path() / "bin" / "runs"));
+    std::vector<std::string> ids;
+    for (std::string id; std::getline(lines, id);) ids.push_back(id);
+    return ids;
+  }
+
+  bool has_started(const std::string& id) const {
+    return happens([&] { return !text_of(folder.path() / "bin" / ("started-" + id)).empty(); });
+  }
+
+  const Folder folder;
+  std::string workflow;
+};
+
+TEST_F(RunnerTest, RunsAllStagesInTheOrderOfTheGraph) {
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_THAT(ran(), ElementsAre("mesh", "form", "inflated", testing::_, testing::_));
+  for (const char* id : {"mesh", "form", "inflated", "gust", "calm"}) {
+    for (const char* file : {"stage.yaml", "state.hdf", "state.hdf.sha256", "provenance.json", "log.txt"}) {
+      EXPECT_TRUE(std::filesystem::exists(out(id) / file)) << id << "/" << file;
+    }
+  }
+  EXPECT_THAT(outcome.text, HasSubstr("mesh: runs: it has not run yet\nmesh: threads "));
+  EXPECT_THAT(text_of(out("gust") / "log.txt"), HasSubstr("threads "));
+}
+
+TEST_F(RunnerTest, SecondRunFindsAllUpToDate) {
+  pneuma({"w.yaml"});
+  const Outcome outcome = pneuma({"run", "w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(ran(), IsEmpty());
+  EXPECT_EQ(outcome.text,
+            "mesh: up to date\nform: up to date\ninflated: up to date\ngust: up to date\ncalm: up to date\n");
+}
+
+TEST_F(RunnerTest, LayoutAndCommentsMakeNothingStale) {
+  pneuma({"w.yaml"});
+  change("mesh: {element: T6, size: 0.15 m}", "# finer?\n\nmesh:\n    size: 15 cm\n    element: T6");
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), IsEmpty());
+}
+
+TEST_F(RunnerTest, ChangedSettingRunsItsStageAndWhatDependsOnIt) {
+  pneuma({"w.yaml"});
+  change("kappa: 1.4", "kappa: 1.2");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("gust"));
+  EXPECT_THAT(outcome.text, HasSubstr("gust: runs: settings changed (stages.gust.gas.top.kappa 1.4 -> 1.2)\n"));
+  change("bottom: 300 Pa", "bottom: 310 Pa");
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), UnorderedElementsAre("inflated", "gust", "calm"));
+}
+
+TEST_F(RunnerTest, ChangedProgramRunsItsStagesAgain) {
+  pneuma({"w.yaml"});
+  folder.write("bin/pneuma-inflate", std::string(script) + "# changed\n");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("inflated")); // its state is the same, so nothing after it runs
+  EXPECT_THAT(outcome.text, HasSubstr("inflated: runs: its program changed\n"));
+}
+
+TEST_F(RunnerTest, OnlyRunsOneStage) {
+  pneuma({"w.yaml"});
+  change("bottom: 300 Pa", "bottom: 310 Pa");
+  const Outcome outcome = pneuma({"run", "w.yaml", "--only", "inflated"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(ran(), ElementsAre("inflated"));
+}
+
+TEST_F(RunnerTest, OnlyWithoutItsInputIsABadState) {
+  const Outcome outcome = pneuma({"run", "w.yaml", "--only", "inflated"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.text, HasSubstr("run `form` first, or leave --only away"));
+  EXPECT_THAT(ran(), IsEmpty());
+}
+
+TEST_F(RunnerTest, FromRunsItAndAllThatDependsOnItAnew) {
+  pneuma({"w.yaml"});
+  pneuma({"run", "w.yaml", "--from", "inflated"});
+  EXPECT_THAT(ran(), UnorderedElementsAre("inflated", "gust", "calm"));
+}
+
+TEST_F(RunnerTest, ForceRunsDependentsOnlyIfItsStateChanged) {
+  pneuma({"w.yaml"});
+  const Outcome outcome = pneuma({"run", "w.yaml", "--force", "form"});
+  EXPECT_THAT(ran(), ElementsAre("form"));
+  EXPECT_THAT(outcome.text, HasSubstr("form: runs: asked for\n"));
+}
+
+TEST_F(RunnerTest, UnknownStageIsBadInput) {
+  const Outcome outcome = pneuma({"run", "w.yaml", "--force", "gusst"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("there is no stage `gusst`; did you mean `gust`?"));
+}
+
+TEST_F(RunnerTest, FailedStageStopsItsDependentsNotItsSiblings) {
+  write(workflow + "  other: {run: inflate, from: mesh, gauge_pressure: {top: 1 Pa, bottom: 1 Pa}}\n");
+  arm("fail-form", "5");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 5);
+  EXPECT_THAT(ran(), UnorderedElementsAre("mesh", "form", "other"));
+  EXPECT_THAT(outcome.text, HasSubstr("form: a complaint\n"));
+  EXPECT_THAT(outcome.text, HasSubstr("inflated: not run: `form` has no result\n"));
+  EXPECT_THAT(outcome.text, HasSubstr("gust: not run: `inflated` has no result\n"));
+  disarm("fail-form");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_THAT(ran(), UnorderedElementsAre("form", "inflated", "gust", "calm")); // mesh and other are kept
+}
+
+TEST_F(RunnerTest, ExitCodeIsThatOfTheFirstFailedStageInTheFile) {
+  arm("fail-calm", "4");
+  arm("fail-gust", "5");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 5);
+}
+
+TEST_F(RunnerTest, StageThatLeavesNoGoodStateHasFailed) {
+  const auto file = folder.write("bin/pneuma-inflate", "#!/bin/sh\nexit 0\n");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.text, HasSubstr("inflated: failed: it ended well but left no state that matches its digest"));
+}
+
+TEST_F(RunnerTest, StageKilledByASignalHasFailed) {
+  folder.write("bin/pneuma-inflate", "#!/bin/sh\nkill -SEGV $$\n");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.text, HasSubstr("inflated: failed: ended by signal 11"));
+}
+
+TEST_F(RunnerTest, MissingStageProgramIsSaid) {
+  disarm("pneuma-wind");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("wind stages are not available in this build"));
+  EXPECT_THAT(ran(), ElementsAre("mesh", "form", "inflated"));
+}
+
+TEST_F(RunnerTest, DamagedStateIsComputedAgain) {
+  pneuma({"w.yaml"});
+  std::ofstream(out("form") / "state.hdf", std::ios::app) << "x";
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("form")); // it is what it was: nothing after it runs
+  EXPECT_THAT(outcome.text, HasSubstr("form: runs: its state does not match its digest\n"));
+  std::filesystem::remove(out("gust") / "state.hdf");
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("gust"));
+}
+
+TEST_F(RunnerTest, SiblingsRunSideBySide) {
+  arm("meet-gust", "calm");
+  arm("meet-calm", "gust");
+  EXPECT_EQ(pneuma({"run", "w.yaml", "--jobs", "2"}).code, 0);
+  arm("meet-gust", "nobody");
+  EXPECT_EQ(pneuma({"run", "w.yaml", "--jobs", "1", "--force", "gust"}).code, 9);
+}
+
+TEST_F(RunnerTest, InterruptGives130AndKeepsWhatIsDone) {
+  arm("slow-gust");
+  arm("slow-calm");
+  const pid_t pid = start({"w.yaml"});
+  ASSERT_TRUE(has_started("gust"));
+  kill(pid, SIGINT);
+  const Outcome outcome = end_of(pid);
+  EXPECT_EQ(outcome.code, 130) << outcome.text;
+  EXPECT_THAT(outcome.text, HasSubstr("interrupted: the running stages end; what is done is kept"));
+  disarm("slow-gust");
+  disarm("slow-calm");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_THAT(ran(), UnorderedElementsAre("gust", "calm"));
+}
+
+TEST_F(RunnerTest, SecondInterruptKillsAStageThatDoesNotListen) {
+  folder.write("bin/pneuma-wind", "#!/bin/sh\ntrap '' INT\necho $$ >\"$(dirname \"$0\")/started-wind\"\nsleep 60\n");
+  const pid_t pid = start({"w.yaml"});
+  ASSERT_TRUE(has_started("wind"));
+  kill(pid, SIGINT);
+  ASSERT_TRUE(happens([&] { return text_of(folder.path() / "output").find("interrupted") != std::string::npos; }));
+  kill(pid, SIGINT);
+  EXPECT_EQ(end_of(pid).code, 130);
+}
+
+TEST_F(RunnerTest, KilledRunnerLeavesNoStageBehindAndTheNextGoesOn) {
+  arm("slow-form");
+  const pid_t pid = start({"w.yaml"});
+  ASSERT_TRUE(has_started("form"));
+  const pid_t stage = std::stoi(text_of(folder.path() / "bin" / "started-form"));
+  kill(pid, SIGKILL);
+  end_of(pid);
+  EXPECT_TRUE(happens([&] { return kill(stage, 0) != 0; }));
+  disarm("slow-form");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.text, HasSubstr("mesh: up to date\nform: runs: it did not finish last time\n"));
+}
+
+TEST_F(RunnerTest, TwoRunnersDoNotShareAFolder) {
+  arm("slow-form");
+  const pid_t pid = start({"w.yaml"});
+  ASSERT_TRUE(has_started("form"));
+  const Outcome second = pneuma({"w.yaml"});
+  EXPECT_EQ(second.code, 2);
+  EXPECT_THAT(second.text, HasSubstr("another pneuma works in `out/w`"));
+  kill(pid, SIGINT);
+  EXPECT_EQ(end_of(pid).code, 130);
+}
+
+TEST_F(RunnerTest, ResultsGoWhereOutSays) {
+  EXPECT_EQ(pneuma({"run", "w.yaml", "--out", "elsewhere"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "elsewhere" / "gust" / "state.hdf"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST_F(RunnerTest, BadWorkflowRunsNothing) {
+  change("size: 0.15 m", "size: 0.15 kg");
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("w.yaml:15:27: `size`: `0.15 kg` has a unit of another kind"));
+  EXPECT_THAT(ran(), IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST_F(RunnerTest, CheckFindsAllErrorsOrSaysOk) {
+  EXPECT_EQ(pneuma({"check", "w.yaml"}).text,
+            "w.yaml: ok: 5 stages (mesh, form, inflated, gust, calm), 3 foils, 2 chambers\n");
+  change("size: 0.15 m", "size: 0.15 kg");
+  change("nu: 0.45", "nu: 4.5");
+  const Outcome outcome = pneuma({"check", "w.yaml"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("w.yaml:4:40: `nu`"));
+  EXPECT_THAT(outcome.text, HasSubstr("w.yaml:15:27: `size`"));
+}
+
+TEST_F(RunnerTest, StatusSaysWhatIsStaleAndShowsResults) {
+  EXPECT_THAT(pneuma({"status", "w.yaml"}).text, HasSubstr("mesh      mesh      stale: it has not run yet\n"));
+  pneuma({"w.yaml"});
+  change("bottom: 300 Pa", "bottom: 310 Pa");
+  const Outcome outcome = pneuma({"status", "w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.text, HasSubstr("form      formfind  fresh\n"));
+  EXPECT_THAT(outcome.text, HasSubstr("    chamber top: 400 Pa, 3.25 m3\n"));
+  EXPECT_THAT(
+      outcome.text,
+      HasSubstr(
+          "inflated  inflate   stale: settings changed (stages.inflated.gauge_pressure.bottom 300 Pa -> 310 Pa)"));
+  EXPECT_THAT(outcome.text, HasSubstr("gust      wind      stale: `inflated` is stale\n"));
+  EXPECT_THAT(ran(), IsEmpty());
+}
+
+TEST_F(RunnerTest, MistypedCommandGetsASuggestion) {
+  const Outcome outcome = pneuma({"statsu", "w.yaml"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.text, HasSubstr("there is no command `statsu`; did you mean `status`?"));
+}
+
+TEST_F(RunnerTest, OtherProgramsAreForwardedToOrSaidToBeMissing) {
+  const Outcome missing = pneuma({"audit", "state.hdf"});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.text, HasSubstr("`pneuma audit` is not available in this build"));
+  const auto file = folder.write("bin/pneuma-audit", "#!/bin/sh\necho \"audit of $1\"\nexit 7\n");
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  const Outcome forwarded = pneuma({"audit", "state.hdf"});
+  EXPECT_EQ(forwarded.code, 7);
+  EXPECT_EQ(forwarded.text, "audit of state.hdf\n");
+  EXPECT_THAT(pneuma({"study", "w.yaml"}).text, HasSubstr("`pneuma study` is not available yet"));
+}
+
+TEST_F(RunnerTest, WarningsAreShownAndStopNothing) {
+  change("thickness: 250 um", "thickness: 2.5 mm");
+  const Outcome outcome = pneuma({"check", "w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.text, HasSubstr("w.yaml:9:48: warning: `thickness` 2.5 mm is unusual"));
+}
+
+TEST_F(RunnerTest, HelpAndVersionEndWell) {
+  EXPECT_EQ(pneuma({"--help"}).code, 0);
+  EXPECT_EQ(pneuma({"run", "--help"}).code, 0);
+  EXPECT_THAT(pneuma({"--version"}).text, testing::StartsWith("pneuma "));
+  EXPECT_EQ(pneuma({}).code, 2);
+  EXPECT_THAT(pneuma({"keys"}).text, HasSubstr("stress_rule"));
+  EXPECT_THAT(pneuma({"schema"}).text, HasSubstr("draft-07"));
+}
+
+} // namespace
+} // namespace pneuma::pipeline::workflow
