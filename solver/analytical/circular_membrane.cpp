@@ -129,7 +129,7 @@ std::optional<InflatedCircle> inflate(const CircularMembrane& membrane, double p
 }
 
 std::optional<InflatedCircle> inflate_closed(const CircularMembrane& membrane, double absolute0, double volume0,
-                                             double kappa, double ambient, double external) {
+                                             double kappa, double ambient, double external, int steps) {
   // Net pressure p on the membrane: inside gauge pressure less external. Find p with (p + external + ambient)
   // V(p)^kappa = absolute0 volume0^kappa; the left side grows with p.
   const auto miss = [&](const InflatedCircle& circle) {
@@ -138,19 +138,23 @@ std::optional<InflatedCircle> inflate_closed(const CircularMembrane& membrane, d
   double low = 1e-3 * (absolute0 - ambient), high = absolute0 - ambient;
   std::optional<InflatedCircle> at;
   for (int i = 0; i < 60; ++i) {
-    at = inflate(membrane, high);
+    at = inflate(membrane, high, steps);
     if (!at) return std::nullopt;
     if (miss(*at) > 0) break;
     low = high;
     high *= 1.5;
   }
-  std::optional<InflatedCircle> below = inflate(membrane, low);
-  if (!below) return std::nullopt;
+  std::optional<InflatedCircle> below = inflate(membrane, low, steps);
+  for (int i = 0; i < 6 && below && miss(*below) > 0; ++i) { // the volume goes to 0 with the pressure: a root is below
+    low *= 0.01;
+    below = inflate(membrane, low, steps);
+  }
+  if (!below || miss(*below) > 0) return std::nullopt;
   double miss_low = miss(*below), miss_high = miss(*at);
   for (int i = 0; i < 100 && high - low > 1e-13 * high; ++i) {
     double p = low + (high - low) * miss_low / (miss_low - miss_high);
     if (!(p > low && p < high)) p = 0.5 * (low + high);
-    at = inflate(membrane, p);
+    at = inflate(membrane, p, steps);
     if (!at) return std::nullopt;
     const double value = miss(*at);
     if (std::abs(value) < 1e-13) return at;

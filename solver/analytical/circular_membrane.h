@@ -40,6 +40,6 @@ std::optional<InflatedCircle> inflate(const CircularMembrane& membrane, double p
 // Closed air: the pressure after the chamber between the membrane and its rigid base, with volume `volume0` at absolute
 // pressure `absolute0`, sees `external` Pa on the other side; p_abs V^kappa = const; ambient pressure `ambient`.
 std::optional<InflatedCircle> inflate_closed(const CircularMembrane& membrane, double absolute0, double volume0,
-                                             double kappa, double ambient, double external);
+                                             double kappa, double ambient, double external, int steps = 6000);
 
 } // namespace pneuma::solver::analytical
