@@ -39,8 +39,8 @@ void say_results(const json& summary) {
   if (const auto chambers = summary.find("chambers"); chambers != summary.end() && chambers->is_object()) {
     for (const auto& [name, chamber] : chambers->items()) {
       std::vector<std::string> values;
-      if (const auto p = number_at(chamber, {"gauge_pressure"})) values.push_back(fmt::format("{:.4g} Pa", *p));
-      if (const auto v = number_at(chamber, {"volume"})) values.push_back(fmt::format("{:.5g} m3", *v));
+      if (const auto p = number_at(chamber, {"gauge_pressure"})) values.push_back(fmt::format("{:.6g} Pa", *p));
+      if (const auto v = number_at(chamber, {"volume"})) values.push_back(fmt::format("{:.6g} m3", *v));
       line("chamber " + name, values);
     }
   }

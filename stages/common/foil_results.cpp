@@ -149,11 +149,13 @@ void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> s
   state.fields.push_back(std::move(displacement));
 
   const auto nodal = [&](const char* name, const char* unit, std::vector<double> FoilResults::*member) {
-    Field field{name, unit, Location::point, 1, -1, std::vector<double>(now.size(), 0.0)};
+    // NaN: a node of the base alone, which has no stress
+    Field field{name, unit, Location::point, 1, -1, std::vector<double>(now.size(), std::nan(""))};
     for (const FoilResults& r : results) {
-      for (std::size_t i = 0; i < now.size(); ++i) {
-        const double value = (r.*member)[i];
-        if (std::abs(value) > std::abs(field.values[i])) field.values[i] = value;
+      for (const Index node : state.mesh.blocks[static_cast<std::size_t>(r.block)].connectivity) {
+        double& value = field.values[static_cast<std::size_t>(node)];
+        const double of_foil = (r.*member)[static_cast<std::size_t>(node)];
+        if (!(std::abs(of_foil) <= std::abs(value))) value = of_foil;
       }
     }
     state.fields.push_back(std::move(field));
