@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "geometry/base/namespace.h"
+
 namespace pneuma::geometry::base {
 
 // Exit codes of every program.

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 
 #include <unistd.h>
 
@@ -26,7 +27,20 @@ void warn(const std::string& line) {
   std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
-Progress::Progress() : terminal_(isatty(STDOUT_FILENO) == 1) {}
+namespace {
+
+constexpr const char* marked_variable = "PNEUMA_MARK_PROGRESS";
+
+} // namespace
+
+void Progress::expect_in_pipes() {
+  setenv(marked_variable, "1", 1);
+}
+
+Progress::Progress()
+    : style_(isatty(STDOUT_FILENO) == 1                ? Style::in_place
+             : std::getenv(marked_variable) != nullptr ? Style::marked
+                                                       : Style::plain) {}
 
 Progress::~Progress() {
   done();
@@ -34,14 +48,20 @@ Progress::~Progress() {
 
 void Progress::show(const std::string& line) {
   const double time = now();
-  if (time - last_ < (terminal_ ? 0.1 : 1.0)) return;
+  if (time - last_ < (style_ == Style::plain ? 1.0 : 0.1)) return;
   last_ = time;
-  if (terminal_) {
+  switch (style_) {
+  case Style::in_place:
     std::fprintf(stdout, "\r\033[K%s", line.c_str());
     std::fflush(stdout);
     open_ = true;
-  } else {
+    break;
+  case Style::marked:
+    say(mark + line);
+    break;
+  case Style::plain:
     say(line);
+    break;
   }
 }
 

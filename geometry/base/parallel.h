@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "geometry/base/namespace.h"
+
 namespace pneuma::geometry::base {
 
 // Calls `work(chunk)` for chunk = 0 .. chunks-1 on up to `threads` threads. The chunks are the caller's, so results do

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "geometry/base/namespace.h"
+
 namespace pneuma::geometry::base {
 
 // Pressure against still ambient air, Pa.

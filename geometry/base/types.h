@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "geometry/base/namespace.h"
+
 namespace pneuma::geometry::base {
 
 using Index = std::int32_t; // number of a node, an element, a degree of freedom
@@ -20,7 +22,3 @@ using VecX = Eigen::VectorXd;
 using MatX = Eigen::MatrixXd;
 
 } // namespace pneuma::geometry::base
-
-namespace pneuma {
-namespace base = geometry::base; // short: everybody uses it
-}

@@ -12,10 +12,10 @@
 #include "pipeline/schema/spelling.h"
 #include "pipeline/workflow/options.h"
 
+namespace pneuma::pipeline::runner {
+
 namespace {
 
-using namespace pneuma;
-using namespace pneuma::pipeline;
 using base::ExitCode;
 using base::say;
 
@@ -134,6 +134,8 @@ int body(int argc, char** argv) {
 
 } // namespace
 
+} // namespace pneuma::pipeline::runner
+
 int main(int argc, char** argv) {
-  return base::guarded_main("pneuma", &body, argc, argv);
+  return pneuma::base::guarded_main("pneuma", &pneuma::pipeline::runner::body, argc, argv);
 }

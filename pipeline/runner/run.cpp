@@ -25,7 +25,6 @@
 namespace pneuma::pipeline::runner {
 
 using base::ExitCode;
-using base::say;
 using workflow::StageSettings;
 using workflow::Workflow;
 
@@ -80,6 +79,7 @@ public:
     fs::create_directories(out, failure);
     const FolderLock lock(out);
     const Interrupts interrupts;
+    if (isatty(STDOUT_FILENO) == 1) base::Progress::expect_in_pipes();
     if (!options_.only.empty()) check_input_of(job(options_.only));
     set_threads();
     while (true) {
@@ -257,18 +257,33 @@ private:
     const ssize_t count = read(one.child.output, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) return;
     if (count <= 0) return end(one);
-    one.log.write(buffer, count).flush();
     one.unfinished_line.append(buffer, static_cast<std::size_t>(count));
     for (auto end_of_line = one.unfinished_line.find('\n'); end_of_line != std::string::npos;
          end_of_line = one.unfinished_line.find('\n')) {
-      say(fmt::format("{}: {}", one.stage->id, one.unfinished_line.substr(0, end_of_line)));
+      tell(one, one.unfinished_line.substr(0, end_of_line));
       one.unfinished_line.erase(0, end_of_line + 1);
     }
   }
 
+  // Progress is shown in place and leaves no trace; other lines stay, here and in the log.
+  void tell(Job& one, const std::string& line) {
+    if (line.rfind(base::Progress::mark, 0) == 0) {
+      progress_line_.show(fmt::format("{}: {}", one.stage->id, line.substr(1)));
+      return;
+    }
+    one.log << line << std::endl;
+    say(fmt::format("{}: {}", one.stage->id, line));
+  }
+
+  // One line of the runner, below what it has said so far.
+  void say(const std::string& line) {
+    progress_line_.done();
+    base::say(line);
+  }
+
   void end(Job& one) {
     close(one.child.output);
-    if (!one.unfinished_line.empty()) say(fmt::format("{}: {}", one.stage->id, one.unfinished_line));
+    if (!one.unfinished_line.empty()) tell(one, one.unfinished_line);
     one.unfinished_line.clear();
     const int code = wait_for(one.child);
     if (code > 128) return fail(one, static_cast<int>(ExitCode::bug), fmt::format("ended by signal {}", code - 128));
@@ -300,6 +315,7 @@ private:
   int side_by_side_ = 1;
   int threads_ = 1;
   int interrupted_ = 0;
+  base::Progress progress_line_;
 };
 
 } // namespace

@@ -23,7 +23,7 @@ struct Provenance {
   std::string stage_kind;                    // mesh, formfind, inflate, wind
   std::string stage_id;                      // key in the workflow file
   std::map<std::string, std::string> inputs; // name -> sha256 (state, ...)
-  std::string settings;                      // the whole stage.yaml that made it
+  std::string settings;                      // effective settings of the stage, as YAML
   std::string verdict;                       // one sentence: how it converged
   bool converged = false;                    // false: the last good state of a stage that did not reach its end
   double load_factor = 0;                    // reached, 0 .. 1

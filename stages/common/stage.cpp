@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <getopt.h>
@@ -20,13 +18,6 @@ namespace pneuma::stages::common {
 namespace {
 
 constexpr const char* version = "0.1.0";
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 } // namespace
 
@@ -125,7 +116,8 @@ pipeline::state::Provenance provenance(const Start& start) {
   p.stage_kind = start.stage().run;
   p.stage_id = start.stage().id;
   if (!start.arguments.in.empty()) p.inputs["state"] = pipeline::digest::sha256_of_file(start.arguments.in);
-  p.settings = text_of(start.arguments.config);
+  // values only: where they stand in the user's file must not change the state
+  p.settings = pipeline::workflow::effective_settings(start.workflow, start.stage());
   return p;
 }
 

@@ -208,7 +208,7 @@ Eye eye_on(const std::vector<Surface>& surfaces, const Options& options, bool sc
   Eye eye;
   eye.direction = options.view == View::top    ? Vec3(0, 0, 1)
                   : options.view == View::side ? Vec3(0, -1, 0)
-                                               : Vec3(-0.45, -1, 0.7).normalized();
+                                               : Vec3(-0.45, -1, 0.4).normalized();
   eye.right = options.view == View::top ? Vec3(1, 0, 0) : Vec3(0, 0, 1).cross(eye.direction).normalized();
   eye.up = eye.direction.cross(eye.right);
   Eigen::AlignedBox3d box;
