@@ -6,7 +6,6 @@
 namespace pneuma::solver::path {
 
 struct LoadPathOptions {
-  NewtonOptions newton;
   int parts = 1;             // the path is reported at `parts` equal parts; between them steps are automatic
   double smallest_step = 1e-5; // of the load factor
 };

@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(CircularMembrane, EveryElement,
 
 TEST_P(EveryElement, InflatesFromFlatToTheExactSolutionWithItsOrder) {
   const analytical::CircularMembrane membrane{radius, stiffness, poisson, 0};
-  for (const double pressure : {100e3, 250e3, 400e3}) {
+  for (const double pressure : {100e3, 400e3}) {
     const auto exact = analytical::inflate(membrane, pressure);
     std::array<double, 3> deflection_error{}, volume_error{};
     const int first = is_quadratic(GetParam()) ? 2 : 8;
@@ -131,7 +131,7 @@ TEST_P(EveryElement, PretensionOfOneAndTenKilonewtonsAgreesWithTheExactSolution)
     const auto exact = analytical::inflate({radius, stiffness, poisson, pretension}, 250e3);
     ASSERT_TRUE(free && exact);
     std::array<double, 2> error{}, volume_error{};
-    const int first = is_quadratic(GetParam()) ? 4 : 12;
+    const int first = is_quadratic(GetParam()) ? 4 : 8;
     for (std::size_t k = 0; k < 2; ++k) {
       const Solved s = inflate(GetParam(), first << k, 250e3, pretension);
       ASSERT_TRUE(s.converged);
@@ -168,7 +168,7 @@ TEST_P(EveryElement, ClosedAirUnderOutsidePressureAgreesWithTheExactSolution) {
       ASSERT_TRUE(exact && regulated);
       EXPECT_GT(exact->deflection, 1.001 * regulated->deflection); // the air resists
       std::array<double, 2> error{}, volume_error{};
-      const int first = is_quadratic(GetParam()) ? 4 : 12;
+      const int first = is_quadratic(GetParam()) ? 4 : 8;
       for (std::size_t k = 0; k < 2; ++k) {
         assembly::Model model = flat_disc(GetParam(), first << k, 400e3);
         assembly::Configuration c{model.mesh.nodes, VecX::Zero(1), 0};
@@ -185,7 +185,7 @@ TEST_P(EveryElement, ClosedAirUnderOutsidePressureAgreesWithTheExactSolution) {
         EXPECT_LE(s.iterations, 12);
         error[k] = std::abs(s.deflection / exact->deflection - 1);
         volume_error[k] = std::abs(s.volume / exact->volume - 1);
-        EXPECT_NEAR(c.pressures[0], exact->pressure + outside, 2e-3 * exact->pressure);
+        EXPECT_NEAR(c.pressures[0], exact->pressure + outside, 4e-3 * exact->pressure);
         std::printf("%s ambient %.0f outside %.0f kPa divisions %d: deflection %.6f m (regulated %.6f), gauge %.1f Pa; "
                     "errors %.3e %.3e (%d iterations)\n",
                     name_of(GetParam()), ambient, outside / 1e3, first << k, s.deflection, regulated->deflection,

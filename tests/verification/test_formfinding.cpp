@@ -194,4 +194,24 @@ TEST_P(EveryElement, FilmWithTooMuchPressureIsDiagnosed) {
   EXPECT_NEAR(limit->needed_tension, 1.3 * n, 0.05 * 1.3 * n);
 }
 
+TEST(Formfinding, FilmFarFromTheOriginIsTheSameFilm) {
+  // a plan in the coordinates of a land survey, 400 km from their origin
+  Mesh mesh = meshing::mesh_plan(Rectangle{6, 3}, {ElementType::T6, {}, std::array{8, 4}});
+  const formfinding::Form near = form_of(mesh, {0, 890, 400});
+  const Vec3 place(3e5, 3e5, 100);
+  for (Vec3& x : mesh.nodes) x += place;
+  const formfinding::Form far = form_of(mesh, {0, 890, 400});
+  ASSERT_EQ(near.verdict, Verdict::converged);
+  ASSERT_EQ(far.verdict, Verdict::converged) << far.reason;
+  EXPECT_LE(far.updates, near.updates + 2);
+  for (const Edge& edge : mesh.edges) {
+    for (const Index node : edge.nodes) {
+      EXPECT_EQ(far.positions[static_cast<std::size_t>(node)], mesh.nodes[static_cast<std::size_t>(node)]);
+    }
+  }
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    ASSERT_LT((far.positions[i] - place - near.positions[i]).norm(), 1e-8) << i;
+  }
+}
+
 } // namespace
