@@ -75,7 +75,8 @@ TEST(StateFile, KeepsEveryBitOfOddNumbers) {
 TEST(StateFile, KeepsLongTextsAndTextsBeyondAscii) {
   const TemporaryFolder folder;
   State state = cushion_state(ElementType::T3, 1, 1);
-  state.provenance.settings = std::string(300'000, 'x') + "\ncushion: \u00dcberdruck 250 \u00b5m\t ";
+  state.provenance.settings = "\ncushion: \u00dcberdruck 250 \u00b5m\t ";
+  state.provenance.settings.append(300'000, 'x');
   state.mesh.blocks[0].name = "\u4e0a";
   state.fields[0].name = "Kr\u00fcmmung [1\\m]";
   state.fields[0].unit = "\u00b5m";
