@@ -13,13 +13,15 @@
 namespace pneuma::solver::assembly {
 
 using base::Index;
-using base::VecX;
 using base::Vec3;
+using base::VecX;
 
 // A cushion and what acts on it along one stage's path: plain data. Values in pairs run linearly with the load factor
 // from its start (0) to its end (1).
 using Ramp = std::array<double, 2>;
-inline double at(const Ramp& ramp, double load_factor) { return ramp[0] + load_factor * (ramp[1] - ramp[0]); }
+inline double at(const Ramp& ramp, double load_factor) {
+  return ramp[0] + load_factor * (ramp[1] - ramp[0]);
+}
 
 // Entry i belongs to block i of the mesh; none for a rigid base.
 struct Foil {
@@ -30,8 +32,8 @@ struct Foil {
 
 struct Chamber {
   std::string name;
-  Index outer = 0; // block towards the weather
-  Index inner = 0; // block towards the room (foil or base)
+  Index outer = 0;        // block towards the weather
+  Index inner = 0;        // block towards the room (foil or base)
   double dead_volume = 0; // m3
   chamber::Gas gas;
   double ambient = 0; // Pa absolute; a closed law's own ambient pressure goes before it

@@ -24,25 +24,25 @@ struct FoilEquations {
   std::vector<Index> coordinate; // [unknown] -> 3 node + component
   linear::SymmetricPattern pattern;
   linear::Scatter scatter;
-  std::vector<double> tangent;    // values of the pattern, N/m: internal + pressure (symmetric part) + zones
-  VecX residual;                  // internal - external, free unknowns, N
-  VecX pressure_gradient;         // d volume / d unknown = force of a unit pressure, m2
-  VecX internal, external;        // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
-  double volume = 0;              // below the foil, m3
-  double energy = 0;              // J
-  double stiffness = 0;           // norm of the last tangent's diagonal, N/m
-  double pressure = 0;            // net pressure on the whole foil along its normal, Pa
-  std::vector<double> laplacian;  // values of the pattern: int grad N . grad N of the start shape, -
+  std::vector<double> tangent;   // values of the pattern, N/m: internal + pressure (symmetric part) + zones
+  VecX residual;                 // internal - external, free unknowns, N
+  VecX pressure_gradient;        // d volume / d unknown = force of a unit pressure, m2
+  VecX internal, external;       // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
+  double volume = 0;             // below the foil, m3
+  double energy = 0;             // J
+  double stiffness = 0;          // norm of the last tangent's diagonal, N/m
+  double pressure = 0;           // net pressure on the whole foil along its normal, Pa
+  std::vector<double> laplacian; // values of the pattern: int grad N . grad N of the start shape, -
 };
 
 // Sums that tell how far from equilibrium a configuration is.
 struct Balance {
-  bool possible = true;     // false: an element failed, a chamber's volume or absolute pressure is not positive
-  const char* reason = "";  // why not possible
-  double residual = 0;      // |internal - external| of the free unknowns, N
-  double force_scale = 0;   // the larger of |external| and |internal|, N; 0 where nothing acts on the free unknowns
-  double rounding = 0;      // residual that a change of all positions in their last digit makes, N (needs a tangent)
-  double gas = 0;           // largest relative error of a chamber's law
+  bool possible = true;    // false: an element failed, a chamber's volume or absolute pressure is not positive
+  const char* reason = ""; // why not possible
+  double residual = 0;     // |internal - external| of the free unknowns, N
+  double force_scale = 0;  // the larger of |external| and |internal|, N; 0 where nothing acts on the free unknowns
+  double rounding = 0;     // residual that a change of all positions in their last digit makes, N (needs a tangent)
+  double gas = 0;          // largest relative error of a chamber's law
 };
 
 // Residual and tangent of a whole cushion, foil by foil side by side in threads.
@@ -82,12 +82,12 @@ private:
   int threads_;
   double time_step_ = 0;
   double load_factor_ = 0; // of the last evaluation
-  Vec3 origin_; // of volumes, near the cushion
+  Vec3 origin_;            // of volumes, near the cushion
   std::vector<FoilEquations> foils_;
-  std::vector<Index> foil_of_block_;                 // -1: base
-  std::vector<double> base_volume_;                  // per block, of those without equations
+  std::vector<Index> foil_of_block_;                           // -1: base
+  std::vector<double> base_volume_;                            // per block, of those without equations
   std::vector<std::vector<double>> old_history_, new_history_; // per foil
-  std::vector<Index> failed_element_;                // per foil, -1: none
+  std::vector<Index> failed_element_;                          // per foil, -1: none
 };
 
 } // namespace pneuma::solver::assembly

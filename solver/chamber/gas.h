@@ -39,7 +39,8 @@ struct GasLine {
   bool possible = true;  // false: closed air without volume, pressure or temperature, or a volume of 0 is the goal
 };
 
-// At gauge pressure p, volume V and load factor. Closed air as ln p + kappa ln V = const, so that V -> 0 cannot overflow.
+// At gauge pressure p, volume V and load factor. Closed air as ln p + kappa ln V = const, so that V -> 0 cannot
+// overflow.
 GasLine gas_line(const Gas& gas, double gauge_pressure, double volume, double load_factor);
 
 // Gauge pressure that a regulated chamber has at a load factor; other laws keep `current`.

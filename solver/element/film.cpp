@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-
 #include "geometry/volume.h"
 
 namespace pneuma::solver::element {

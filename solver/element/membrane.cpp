@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-
 #include "geometry/shape_functions.h"
 #include "geometry/volume.h"
 

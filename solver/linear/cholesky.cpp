@@ -102,6 +102,8 @@ double Cholesky::pivot_ratio() const {
   return workspace_->factor->n == 0 ? 1.0 : cholmod_rcond(workspace_->factor, &workspace_->common);
 }
 
-void use_one_blas_thread() { openblas_set_num_threads(1); }
+void use_one_blas_thread() {
+  openblas_set_num_threads(1);
+}
 
 } // namespace pneuma::solver::linear

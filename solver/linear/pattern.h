@@ -22,7 +22,7 @@ struct SymmetricPattern {
 // Where each element's matrix goes: for its entries (i <= j), column by column, the position in the values, or -1 where
 // an unknown is held.
 struct Scatter {
-  Index per_element = 0; // unknowns of an element, m
+  Index per_element = 0;       // unknowns of an element, m
   std::vector<Index> position; // [element][m (m+1) / 2]
 };
 

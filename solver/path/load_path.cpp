@@ -22,13 +22,15 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     const bool to_goal = length > 0.999 * left;
     Configuration trial = configuration;
     trial.load_factor = to_goal ? goal : result.load_factor + (length > 0.6 * left ? 0.5 * left : length);
-    const Newton::Outcome outcome =
-        newton.solve(trial, [&](const Iteration& i) { if (report) report(result.steps + 1, i); });
+    const Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
+      if (report) report(result.steps + 1, i);
+    });
     if (!outcome.converged) {
       length = (trial.load_factor - result.load_factor) / 4;
       if (length < options.smallest_step) {
         system.evaluate(configuration, true);
-        result.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result.load_factor, outcome.reason);
+        result.reason =
+            fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result.load_factor, outcome.reason);
         return result;
       }
       continue;

@@ -16,25 +16,25 @@ using base::Vec3;
 using base::VecX;
 
 struct NewtonOptions {
-  double tolerance = 1e-9;     // |residual| / force scale; gas laws to the same relative error
-  int max_iterations = 80;     // slack foils need many damped ones; taut cushions three to six
-  int max_line_searches = 12;  // evaluations in one line search
+  double tolerance = 1e-9;    // |residual| / force scale; gas laws to the same relative error
+  int max_iterations = 80;    // slack foils need many damped ones; taut cushions three to six
+  int max_line_searches = 12; // evaluations in one line search
 };
 
 // One iteration, as it is reported.
 struct Iteration {
   double load_factor = 0;
-  int number = 0;          // within the step
-  double residual = 0;     // relative to the force scale, before the iteration
-  double gas = 0;          // relative error of the gas laws, before
-  double step_length = 1;  // of the line search
-  double shift = 0;        // N/m, largest artificial tension that acted in the tangent (0: none)
+  int number = 0;         // within the step
+  double residual = 0;    // relative to the force scale, before the iteration
+  double gas = 0;         // relative error of the gas laws, before
+  double step_length = 1; // of the line search
+  double shift = 0;       // N/m, largest artificial tension that acted in the tangent (0: none)
 };
 
 // Work and time of everything a solver object did.
 struct Work {
   int iterations = 0;
-  int factorizations = 0;  // of one foil's tangent
+  int factorizations = 0; // of one foil's tangent
   int line_searches = 0;
   double assembly = 0, factorization = 0, solve = 0; // s of wall time
   double analysis = 0;
