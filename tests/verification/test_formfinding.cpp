@@ -164,17 +164,17 @@ TEST_P(EveryElement, TubeBecomesTheCatenoid) {
 }
 
 TEST_P(EveryElement, CatenoidAboveItsLargestHeightIsSaidNotToExist) {
-  // the largest height is 1.3255 radii (Goldschmidt 1831)
-  for (const double height : {1.40, 1.6}) {
-    const int along = is_quadratic(GetParam()) ? 6 : 12;
-    const Mesh mesh = tube(GetParam(), 4 * along, along, height);
-    const formfinding::Form form = form_of(mesh, {0, 890, 0});
+  // the largest height is 1.3255 radii (Goldschmidt 1831): half a percent and more above it there is none, half a
+  // percent below it is found; polygons for rings hold a little less than circles
+  const int along = is_quadratic(GetParam()) ? 10 : 24;
+  for (const double height : {1.332, 1.4, 1.6}) {
+    const formfinding::Form form = form_of(tube(GetParam(), 6 * along, along, height), {0, 890, 0});
     EXPECT_EQ(form.verdict, Verdict::no_equilibrium) << height << ": residual " << form.residual;
-    std::printf("%s height %.2f: %s after %d updates\n", name_of(GetParam()), height, form.reason.c_str(),
+    std::printf("%s height %.3f: %s after %d updates\n", name_of(GetParam()), height, form.reason.c_str(),
                 form.updates);
   }
-  const int along = is_quadratic(GetParam()) ? 6 : 12;
-  EXPECT_EQ(form_of(tube(GetParam(), 4 * along, along, 1.30), {0, 890, 0}).verdict, Verdict::converged);
+  const formfinding::Form below = form_of(tube(GetParam(), 6 * along, along, 1.319), {0, 890, 0});
+  EXPECT_EQ(below.verdict, Verdict::converged) << below.reason;
 }
 
 TEST_P(EveryElement, FilmWithTooMuchPressureIsDiagnosed) {
