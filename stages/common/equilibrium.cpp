@@ -251,14 +251,7 @@ private:
     };
     count("stability.load_held", stability.load_held);
     count("stability.control_held", stability.control_held);
-    Index elements = 0;
-    for (const geometry::Block& block : state.mesh.blocks) {
-      if (block.kind == geometry::BlockKind::foil) elements += state.mesh.element_count(block);
-    }
-    summary.set("mesh.nodes", static_cast<int>(state.mesh.nodes.size()));
-    summary.set("mesh.elements", elements);
-    summary.set("mesh.dofs", system_.unknowns());
-    summary.set("mesh.element", geometry::name_of(state.mesh.element));
+    summarize_mesh(state, summary);
     const path::Work& work = newton_.work();
     // acted in tangents on the way only: the accepted state is in equilibrium without it
     summary.set("artificial_tension_on_the_way", artificial_tension_);

@@ -117,6 +117,22 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   return r;
 }
 
+void summarize_mesh(const State& state, Summary& summary) {
+  Index elements = 0;
+  std::vector<char> of_foil(state.mesh.nodes.size(), 0);
+  for (const geometry::Block& block : state.mesh.blocks) {
+    if (block.kind == geometry::BlockKind::base) continue;
+    elements += state.mesh.element_count(block);
+    for (const Index node : block.connectivity) of_foil[static_cast<std::size_t>(node)] = 1;
+  }
+  int unknowns = 0;
+  for (std::size_t k = 0; k < state.fixed.size(); ++k) unknowns += of_foil[k / 3] != 0 && state.fixed[k] == 0 ? 1 : 0;
+  summary.set("mesh.nodes", static_cast<int>(state.mesh.nodes.size()));
+  summary.set("mesh.elements", elements);
+  summary.set("mesh.dofs", unknowns);
+  summary.set("mesh.element", geometry::name_of(state.mesh.element));
+}
+
 void summarize(const FoilResults& r, Summary& summary) {
   const std::string foil = "foils." + r.name + ".";
   summary.set(foil + "area", r.area);

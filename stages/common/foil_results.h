@@ -37,6 +37,9 @@ struct FoilResults {
 FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
                          std::span<const Vec3> start, std::span<const Vec3> now, std::span<const double> history);
 
+// Writes the keys mesh.*: elements and unknowns of the foils.
+void summarize_mesh(const State& state, Summary& summary);
+
 // Writes the keys foils.<name>.* .
 void summarize(const FoilResults& results, Summary& summary);
 

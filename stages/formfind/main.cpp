@@ -13,7 +13,7 @@
 #include "solver/element/reference.h"
 #include "solver/formfinding/formfinding.h"
 #include "solver/linear/cholesky.h"
-#include "stages/common/summary.h"
+#include "stages/common/foil_results.h"
 #include "stages/formfind/self_check.h"
 
 namespace pneuma::stages::formfind {
@@ -189,8 +189,7 @@ int run(int argc, char** argv) {
   summary.set("steps", 1);
   summary.set("iterations", updates);
   summary.set("factorizations", factorizations);
-  summary.set("mesh.nodes", static_cast<int>(state.mesh.nodes.size()));
-  summary.set("mesh.element", geometry::name_of(state.mesh.element));
+  common::summarize_mesh(state, summary);
   summary.set("timing.total", clock.seconds());
   summary.set("memory_peak", common::peak_memory());
   summary.append("modelled", "a film of uniform, isotropic prestress under uniform pressure");

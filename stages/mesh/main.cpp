@@ -7,8 +7,7 @@
 #include "geometry/mesh_check.h"
 #include "geometry/meshing/plan_mesh.h"
 #include "pipeline/state/state_file.h"
-#include "stages/common/stage.h"
-#include "stages/common/summary.h"
+#include "stages/common/foil_results.h"
 
 namespace pneuma::stages::mesh {
 
@@ -108,9 +107,7 @@ int run(int argc, char** argv) {
   summary.set("id", start.stage().id);
   summary.set("converged", true);
   summary.set("verdict", state.provenance.verdict);
-  summary.set("mesh.nodes", static_cast<int>(state.mesh.nodes.size()));
-  summary.set("mesh.elements", elements);
-  summary.set("mesh.element", geometry::name_of(state.mesh.element));
+  common::summarize_mesh(state, summary);
   summary.set("timing.total", clock.seconds());
   summary.set("memory_peak", common::peak_memory());
   summary.write(start.arguments.out.parent_path() / "summary.json");
