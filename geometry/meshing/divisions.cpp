@@ -71,7 +71,9 @@ std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options) {
                        : std::holds_alternative<Rectangle>(plan) ? a * b
                                                                  : a * a;
   if (cells > most_cells)
-    throw base::InputError(fmt::format("mesh: about {:.0f} cells asked for, {:.0f} are the most", cells, most_cells));
+    throw base::InputError(fmt::format(
+        "about {:.0f} elements a foil asked for, {:.0f} are the most: choose a larger size or fewer divisions", cells,
+        most_cells));
   return n;
 }
 

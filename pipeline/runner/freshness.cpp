@@ -95,6 +95,7 @@ Verdict examine(const StageFiles& files, const Provenance& wanted, const std::st
             std::filesystem::exists(files.state) ? "its state does not match its digest" : "its state is missing"};
   }
   if (state != made->state) return {false, "its state was replaced"};
+  if (!std::filesystem::exists(files.summary)) return {false, "its summary.json is missing"};
   return {true, ""};
 }
 

@@ -77,6 +77,10 @@ public:
     const fs::path out = output_folder(workflow_, options_.out);
     std::error_code failure;
     fs::create_directories(out, failure);
+    if (failure) {
+      throw base::InputError(
+          fmt::format("`{}` cannot be made: {}; choose another folder with --out", out.string(), failure.message()));
+    }
     const FolderLock lock(out);
     const Interrupts interrupts;
     if (isatty(STDOUT_FILENO) == 1) base::Progress::expect_in_pipes();
@@ -286,6 +290,10 @@ private:
     if (!one.unfinished_line.empty()) tell(one, one.unfinished_line);
     one.unfinished_line.clear();
     const int code = wait_for(one.child);
+    if (interrupted_ != 0 && (code == 128 + SIGINT || code == 128 + SIGTERM || code == 128 + SIGKILL)) {
+      one.progress = Progress::failed;
+      return say(fmt::format("{}: interrupted", one.stage->id));
+    }
     if (code > 128) return fail(one, static_cast<int>(ExitCode::bug), fmt::format("ended by signal {}", code - 128));
     if (code == 127) return fail(one, static_cast<int>(ExitCode::bug), "its program could not be started");
     if (code != 0) {

@@ -120,6 +120,26 @@ private:
   std::size_t nodes_ = 0;
 };
 
+// What yaml-cpp says names its own grammar; the commonest slips have a plainer name.
+std::string plainly(const YAML::Exception& error, const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int i = 0; i <= error.mark.line && std::getline(lines, line); ++i) {
+    if (i < error.mark.line - 1) continue;
+    const auto first = line.find_first_not_of(' ');
+    if (first != std::string::npos && line[first] == '\t') {
+      return fmt::format("not valid YAML: line {} is indented with a tab; use spaces", i + 1);
+    }
+  }
+  if (error.msg == "end of map flow not found") {
+    return "not valid YAML: a `{` above is not closed, or a comma is missing before this";
+  }
+  if (error.msg == "end of sequence flow not found") {
+    return "not valid YAML: a `[` above is not closed, or a comma is missing before this";
+  }
+  return "not valid YAML: " + error.msg;
+}
+
 } // namespace
 
 Node parse_yaml(const std::string& text, const std::string& name, std::vector<Problem>& problems) {
@@ -133,7 +153,7 @@ Node parse_yaml(const std::string& text, const std::string& name, std::vector<Pr
       problems.push_back({second.root.mark, "a second YAML document begins here; a file holds one"});
     }
   } catch (const YAML::Exception& error) {
-    problems.push_back({{name, error.mark.line + 1, error.mark.column + 1}, "not valid YAML: " + error.msg});
+    problems.push_back({{name, error.mark.line + 1, error.mark.column + 1}, plainly(error, text)});
   }
   if (builder.root.mark.line == 0) builder.root.mark = {name, 1, 1};
   return std::move(builder.root);

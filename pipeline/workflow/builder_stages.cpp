@@ -69,6 +69,7 @@ void Builder::check_size(const Value& mesh, const MeshSettings& out) {
   if (!out.size || !plan_known_) return;
   const Mark& mark = mesh["size"]->mark;
   const double area = geometry::area(workflow_.cushion.plan);
+  if (!(area > 0)) return; // the plan has errors of its own
   const double elements = area / (*out.size * *out.size);
   if (elements < 1) {
     warn(mark, fmt::format("`size` {} m is larger than the cushion (about {:.3g} m); is it meant?", *out.size,

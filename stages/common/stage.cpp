@@ -70,6 +70,10 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
     throw base::InputError(
         fmt::format("--out must end in .hdf (ParaView opens it by that), not `{}`", arguments.out.string()));
   }
+  const std::filesystem::path folder = arguments.out.parent_path();
+  if (!folder.empty() && !arguments.check && !std::filesystem::is_directory(folder)) {
+    throw base::InputError(fmt::format("--out: there is no folder `{}`", folder.string()));
+  }
   return arguments;
 }
 

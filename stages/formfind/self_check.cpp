@@ -26,7 +26,7 @@ void check_laplace(const State& state, std::size_t b, double tension, FoilCheck&
                            ? std::abs(check.pressure)
                            : tension / std::sqrt(geometry::surface_area(state.mesh, block, state.mesh.nodes));
   double sum = 0;
-  int count = 0;
+  int& count = check.laplace_points;
   for (const geometry::FittedCurvature& c : geometry::fitted_curvatures(state.mesh, block, state.mesh.nodes)) {
     if (!c.reliable) continue;
     // curvatures are positive where the surface bends away from its normal, as a dome does

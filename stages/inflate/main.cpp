@@ -76,6 +76,7 @@ int run(int argc, char** argv) {
         solver::chamber::Regulated{chamber.gauge_pressure, settings.gauge_pressure.at(chamber.name)};
   }
   drive.modelled.emplace_back("regulated air");
+  if (start.arguments.check) return 0;
   return common::run_equilibrium(start, std::move(drive));
 }
 

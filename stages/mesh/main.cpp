@@ -36,7 +36,11 @@ common::State make_state(const common::Start& start) {
   const workflow::Workflow& w = start.workflow;
   const auto& settings = std::get<workflow::MeshSettings>(start.stage().settings);
   common::State state;
-  state.mesh = make_mesh(w.cushion, settings);
+  try {
+    state.mesh = make_mesh(w.cushion, settings);
+  } catch (const base::InputError& error) {
+    throw base::InputError(common::place(w, settings.size ? "mesh.size" : "mesh.divisions") + error.what());
+  }
   state.stress_rule = settings.stress_rule;
   for (const workflow::FoilSettings& foil : w.cushion.foils) {
     pipeline::state::Foil data;

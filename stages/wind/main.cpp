@@ -36,6 +36,15 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
   const auto quadrature = [&](const geometry::PlanRegion& region) {
     return geometry::region_quadrature(mesh, foil, mesh.nodes, region);
   };
+  // the region of a wind or snow load may stick out, but must not miss the foil
+  const auto loaded = [&] {
+    geometry::RegionQuadrature inside = quadrature(region_of(load.region));
+    if (!(geometry::plan_area(mesh, foil, mesh.nodes, inside) > 0)) {
+      throw base::InputError(fmt::format("{}: load `{}`: nothing of its region lies on foil `{}`: move it",
+                                         to_string(load.mark), load.name, foil.name));
+    }
+    return inside;
+  };
 
   if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
     // the first foil shows its weather face (normal outwards), the last of several its room face
@@ -43,12 +52,10 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
     if (std::holds_alternative<std::monostate>(load.region)) {
       model.face_pressure[static_cast<std::size_t>(block)][1] += along_normal;
     } else {
-      model.zones.push_back(
-          solver::load::pressure_zone(mesh, block, quadrature(region_of(load.region)), {0.0, along_normal}));
+      model.zones.push_back(solver::load::pressure_zone(mesh, block, loaded(), {0.0, along_normal}));
     }
   } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
-    solver::load::add_plan_load(mesh, block, mesh.nodes, quadrature(region_of(load.region)),
-                                -load.factor * snow->weight * up, model.dead_to);
+    solver::load::add_plan_load(mesh, block, mesh.nodes, loaded(), -load.factor * snow->weight * up, model.dead_to);
   } else {
     const auto& patch = std::get<workflow::PatchLoad>(load.kind);
     if (!std::holds_alternative<std::monostate>(load.region)) {
@@ -100,7 +107,7 @@ solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Cha
 
 int run(int argc, char** argv) {
   const common::Start start = common::read_start("wind", argc, argv);
-  if (start.arguments.in.empty()) return 0; // --check
+  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
   const auto& settings = std::get<workflow::WindSettings>(start.stage().settings);
   common::Drive drive;
   drive.state = start.state;
@@ -118,6 +125,7 @@ int run(int argc, char** argv) {
                                      "patch as a dead load on the plan"};
     drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
   }
+  if (start.arguments.check) return 0;
   return common::run_equilibrium(start, std::move(drive));
 }
 

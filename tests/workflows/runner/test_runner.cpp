@@ -263,6 +263,9 @@ TEST_F(RunnerTest, DamagedStateIsComputedAgain) {
   std::filesystem::remove(out("gust") / "state.hdf");
   pneuma({"w.yaml"});
   EXPECT_THAT(ran(), ElementsAre("gust"));
+  std::filesystem::remove(out("gust") / "summary.json");
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("gust"));
 }
 
 TEST_F(RunnerTest, SiblingsRunSideBySide) {
@@ -282,6 +285,7 @@ TEST_F(RunnerTest, InterruptGives130AndKeepsWhatIsDone) {
   const Outcome outcome = end_of(pid);
   EXPECT_EQ(outcome.code, 130) << outcome.text;
   EXPECT_THAT(outcome.text, HasSubstr("interrupted: the running stages end; what is done is kept"));
+  EXPECT_THAT(outcome.text, HasSubstr("gust: interrupted\n"));
   disarm("slow-gust");
   disarm("slow-calm");
   EXPECT_EQ(pneuma({"w.yaml"}).code, 0);

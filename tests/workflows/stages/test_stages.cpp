@@ -267,6 +267,60 @@ TEST_F(Stages, EachStageRunsAloneAndRefusesADamagedOrWrongState) {
   EXPECT_EQ(call((programs / "pneuma-inflate").string() + " --nonsense").code, 2);
 }
 
+TEST_F(Stages, CheckOptionComputesAndWritesNothing) {
+  write(cushion("T3", "  gust: {run: wind, from: inflated, loads: [{name: w, foil: upper, wind: -100 Pa}]}\n"));
+  ASSERT_EQ(pneuma("run w.yaml").code, 0);
+  const std::array<std::array<const char*, 2>, 3> chain = {
+      {{"form", "mesh"}, {"inflated", "form"}, {"gust", "inflated"}}};
+  const std::array<const char*, 3> kinds = {"formfind", "inflate", "wind"};
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const Outcome outcome = call((programs / "pneuma-").string() + kinds[i] + " --check --config " +
+                                 (out(chain[i][0]) / "stage.yaml").string() + " --in " +
+                                 (out(chain[i][1]) / "state.hdf").string() + " --out " + (folder / "x.hdf").string());
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_EQ(outcome.text, "");
+    EXPECT_FALSE(fs::exists(folder / "x.hdf"));
+  }
+}
+
+TEST_F(Stages, RegionThatMissesTheFoilIsRefusedAtItsPlace) {
+  write(cushion(
+      "T3",
+      R"(  gust: {run: wind, from: inflated, loads: [{name: far, foil: upper, wind: -100 Pa, region: {x: [9 m, 10 m], y: [0 m, 1 m]}}]}
+)"));
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.text,
+              testing::ContainsRegex("w.yaml:14:[0-9]+: load `far`: nothing of its region lies on foil `upper`"));
+}
+
+TEST_F(Stages, FormWhoseFoilsPassThroughEachOtherIsRefused) {
+  std::string text = cushion("T3", "");
+  text.replace(text.find("400 Pa"), 6, "-400 Pa");
+  write(text);
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 4);
+  EXPECT_THAT(run.text, HasSubstr("the foils of chamber `main` pass through each other"));
+}
+
+TEST_F(Stages, MeshTooCoarseToCheckItsCurvatureSaysSo) {
+  std::string text = cushion("T6", "");
+  text.replace(text.find("divisions: [16, 8]"), 18, "size: 25 m");
+  write(text);
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.text, HasSubstr("Laplace-Young not checked (mesh too coarse)"));
+}
+
+TEST_F(Stages, MeshOfTooManyElementsIsRefusedAtItsPlace) {
+  std::string text = cushion("T6", "");
+  text.replace(text.find("divisions: [16, 8]"), 18, "size: 1 mm");
+  write(text);
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.text, testing::ContainsRegex("w.yaml:10:[0-9]+: about 18000000 elements a foil asked for"));
+}
+
 TEST_F(Stages, InterruptedChainKeepsWhatIsComputed) {
   std::string text = cushion("T6", "");
   text.replace(text.find("[16, 8]"), 7, "[160, 80]"); // form finding takes seconds on this mesh

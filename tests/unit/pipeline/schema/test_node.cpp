@@ -34,7 +34,8 @@ TEST(Yaml, EveryDuplicateKeyIsFound) {
 }
 
 TEST(Yaml, SyntaxErrorHasItsPlace) {
-  EXPECT_THAT(problems_of("a: {b: 1\nc: 2\n"), ElementsAre(HasSubstr("not valid YAML: ")));
+  EXPECT_THAT(problems_of("a: {b: 1\nc: 2\n"), ElementsAre(HasSubstr("not valid YAML: a `{` above is not closed")));
+  EXPECT_THAT(problems_of("a:\n\tb: 1\n"), ElementsAre(HasSubstr("line 2 is indented with a tab; use spaces")));
 }
 
 TEST(Yaml, SecondDocumentIsRefused) {
