@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -122,6 +123,9 @@ private:
 
 // What yaml-cpp says names its own grammar; the commonest slips have a plainer name.
 std::string plainly(const YAML::Exception& error, const std::string& text) {
+  const bool wide = text.starts_with("\xFE\xFF") || text.starts_with("\xFF\xFE"); // UTF-16, which may have NULs
+  const auto binary = [](char c) { return c >= '\0' && c < '\t'; };
+  if (!wide && std::any_of(text.begin(), text.end(), binary)) return "not valid YAML: this is no text file";
   std::istringstream lines(text);
   std::string line;
   for (int i = 0; i <= error.mark.line && std::getline(lines, line); ++i) {

@@ -35,6 +35,7 @@ TEST(Yaml, EveryDuplicateKeyIsFound) {
 
 TEST(Yaml, SyntaxErrorHasItsPlace) {
   EXPECT_THAT(problems_of("a: {b: 1\nc: 2\n"), ElementsAre(HasSubstr("not valid YAML: a `{` above is not closed")));
+  EXPECT_THAT(problems_of(std::string("a: \"\\\x01\0\"", 8)), ElementsAre(HasSubstr("this is no text file")));
   EXPECT_THAT(problems_of("a:\n\tb: 1\n"), ElementsAre(HasSubstr("line 2 is indented with a tab; use spaces")));
 }
 
