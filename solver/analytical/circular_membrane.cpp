@@ -29,6 +29,29 @@ struct Law {
   }
 };
 
+// Root of a growing function between low (value not above 0) and high (above 0), to rounding: regula falsi with the
+// Illinois rule (Dowell and Jarratt 1971).
+template <class F>
+double root_between(double low, double high, const F& f) {
+  double f_low = f(low), f_high = f(high);
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
+    double x = low + (high - low) * f_low / (f_low - f_high);
+    if (!(x > low && x < high)) x = 0.5 * (low + high);
+    const double value = f(x);
+    if (value == 0) return x;
+    if (value < 0) {
+      low = x;
+      f_low = value;
+      f_high *= 0.5;
+    } else {
+      high = x;
+      f_high = value;
+      f_low *= 0.5;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
 using Vector = std::array<double, 4>; // y = r/R, eta = T_s cos(phi), depth = int l_s sin(phi) dR, volume
 
 struct Problem {
@@ -85,36 +108,17 @@ std::optional<InflatedCircle> inflate(const CircularMembrane& membrane, double p
   const auto ignore = [](double, const Vector&) {};
   // the rim's stretch r/R grows with the pole's stretch; wanted: g
   const auto miss = [&](double l0) { return problem.integrate(l0, steps, ignore)[0] - g; };
-  double low = g, high = g;
-  for (double step = 1e-3;; step *= 2) {
-    high = g + step;
-    if (high > 3) return std::nullopt;
-    if (miss(high) > 0) break;
+  double step = 1e-3, low = g, high = g + step;
+  while (high <= 3 && !(miss(high) > 0)) {
+    step *= 2;
     low = high;
+    high = g + step;
   }
-  double miss_low = miss(low), miss_high = miss(high);
-  for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) { // Illinois
-    double l0 = low + (high - low) * miss_low / (miss_low - miss_high);
-    if (!(l0 > low && l0 < high)) l0 = 0.5 * (low + high);
-    const double value = miss(l0);
-    if (value == 0) {
-      low = high = l0;
-      break;
-    }
-    if (value < 0) {
-      low = l0;
-      miss_low = value;
-      miss_high *= 0.5;
-    } else {
-      high = l0;
-      miss_high = value;
-      miss_low *= 0.5;
-    }
-  }
+  if (!(high <= 3)) return std::nullopt;
+  const double l0 = root_between(low, high, miss);
 
   InflatedCircle result;
   result.pressure = pressure;
-  const double l0 = 0.5 * (low + high);
   const Vector end = problem.integrate(l0, steps, [&](double t, const Vector& v) {
     const double R = problem.rim * std::exp(t);
     const Problem::Local l = problem.local(R, v);
@@ -150,25 +154,13 @@ std::optional<InflatedCircle> inflate_closed(const CircularMembrane& membrane, d
     below = inflate(membrane, low, steps);
   }
   if (!below || miss(*below) > 0) return std::nullopt;
-  double miss_low = miss(*below), miss_high = miss(*at);
-  for (int i = 0; i < 100 && high - low > 1e-13 * high; ++i) {
-    double p = low + (high - low) * miss_low / (miss_low - miss_high);
-    if (!(p > low && p < high)) p = 0.5 * (low + high);
-    at = inflate(membrane, p, steps);
-    if (!at) return std::nullopt;
-    const double value = miss(*at);
-    if (std::abs(value) < 1e-13) return at;
-    if (value < 0) {
-      low = p;
-      miss_low = value;
-      miss_high *= 0.5;
-    } else {
-      high = p;
-      miss_high = value;
-      miss_low *= 0.5;
-    }
-  }
-  return at;
+  return inflate(membrane,
+                 root_between(low, high,
+                              [&](double p) {
+                                const std::optional<InflatedCircle> circle = inflate(membrane, p, steps);
+                                return circle ? miss(*circle) : std::nan("");
+                              }),
+                 steps);
 }
 
 } // namespace pneuma::solver::analytical
