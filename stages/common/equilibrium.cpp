@@ -80,7 +80,8 @@ public:
         newton_(system_, newton_options(start)), history_(folder_ / "history.csv"), series_(folder_),
         contact_(drive_.model.mesh, start.workflow.site.up) {}
 
-  int run() {
+  // Throws Error with exit code 5, after everything is written, where the path did not reach its end.
+  void run() {
     interrupted = 0;
     std::signal(SIGINT, note_interrupt);
     std::signal(SIGTERM, note_interrupt);
@@ -102,7 +103,6 @@ public:
         });
     progress_.done();
     finish(c, result);
-    return result.end == path::PathEnd::reached ? 0 : static_cast<int>(base::ExitCode::no_equilibrium);
   }
 
 private:
@@ -128,7 +128,7 @@ private:
         contact_found_ = fmt::format(
             "contact at load factor {:.4g} at ({:.4g}, {:.4g}, {:.4g}) m between `{}` and `{}`", step.load_factor,
             found->gap.at.x(), found->gap.at.y(), found->gap.at.z(), found->upper, found->lower);
-        base::warn(*contact_found_ + (drive_.contact_stops ? "" : " (goes on: contact is ignored)"));
+        if (!drive_.contact_stops) base::warn(*contact_found_ + " (goes on: contact is ignored)");
       }
     }
     write_history(step, c);
@@ -266,7 +266,9 @@ private:
     for (const std::string& text : drive_.not_modelled) summary.append("not_modelled", text);
     if (contact_found_) summary.append("warnings", *contact_found_);
     summary.write(folder_ / "summary.json");
-    if (!reached) base::warn(verdict + "; the last good state is written and marked");
+    if (!reached) {
+      throw base::Error(base::ExitCode::no_equilibrium, verdict + "; the last good state is written and marked");
+    }
   }
 
   const Start& start_;
@@ -338,7 +340,8 @@ int run_equilibrium(const Start& start, Drive drive) {
                              "yield, creep and tear of the foil: the law is elastic", "contact forces between foils",
                              "dynamics", "flexibility of the frame"});
   solver::linear::use_one_blas_thread();
-  return Run(start, std::move(drive)).run();
+  Run(start, std::move(drive)).run();
+  return 0;
 }
 
 } // namespace pneuma::stages::common

@@ -19,7 +19,8 @@ solver::material::Law law_of(const pipeline::workflow::Material& material);
 solver::assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to);
 
 // Follows the path of a model and writes everything that a stage of this kind writes: steps, history.csv, state.hdf
-// with its digest, summary.json. Returns the exit code: 0, or 5 with the last good state written and marked.
+// with its digest, summary.json. Returns 0; throws Error with exit code 5 where the path does not reach its end, after
+// the last good state is written and marked.
 struct Drive {
   solver::assembly::Model model;
   State state; // what the new state takes over: mesh, foils, supports, chambers

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "geometry/surface.h"
 #include "solver/recovery/patch_recovery.h"
@@ -164,23 +165,49 @@ void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> s
   }
   state.fields.push_back(std::move(displacement));
 
-  const auto nodal = [&](const char* name, const char* unit, std::vector<double> FoilResults::*member) {
-    // NaN: a node of the base alone, which has no stress
-    Field field{name, unit, Location::point, 1, -1, std::vector<double>(now.size(), std::nan(""))};
+  // The rim belongs to all foils, and each has its own stress there: one field a foil, NaN where it has no node.
+  using Values = std::vector<double> FoilResults::*;
+  const std::tuple<const char*, const char*, Values> nodal[] = {
+      {"von_mises", "Pa", &FoilResults::nodal_von_mises},
+      {"principal_stress_1", "Pa", &FoilResults::nodal_stress1},
+      {"principal_stress_2", "Pa", &FoilResults::nodal_stress2},
+      {"principal_strain_1", "1", &FoilResults::nodal_strain1},
+      {"principal_strain_2", "1", &FoilResults::nodal_strain2}};
+  for (const auto& [name, unit, values] : nodal) {
     for (const FoilResults& r : results) {
+      Field field{std::string(name) + "." + r.name,
+                  unit,
+                  Location::point,
+                  1,
+                  -1,
+                  std::vector<double>(now.size(), std::nan(""))};
       for (const Index node : state.mesh.blocks[static_cast<std::size_t>(r.block)].connectivity) {
-        double& value = field.values[static_cast<std::size_t>(node)];
-        const double of_foil = (r.*member)[static_cast<std::size_t>(node)];
-        if (!(std::abs(of_foil) <= std::abs(value))) value = of_foil;
+        field.values[static_cast<std::size_t>(node)] = (r.*values)[static_cast<std::size_t>(node)];
       }
+      state.fields.push_back(std::move(field));
     }
-    state.fields.push_back(std::move(field));
-  };
-  nodal("von_mises", "Pa", &FoilResults::nodal_von_mises);
-  nodal("principal_stress_1", "Pa", &FoilResults::nodal_stress1);
-  nodal("principal_stress_2", "Pa", &FoilResults::nodal_stress2);
-  nodal("principal_strain_1", "1", &FoilResults::nodal_strain1);
-  nodal("principal_strain_2", "1", &FoilResults::nodal_strain2);
+  }
+  // all foils in one: the mean over each element's stress points
+  Field mean{"element_von_mises", "Pa", Location::cell, 1, -1, {}};
+  for (std::size_t b = 0; b < state.mesh.blocks.size(); ++b) {
+    const auto elements = static_cast<std::size_t>(state.mesh.element_count(state.mesh.blocks[b]));
+    const auto of_block = std::find_if(results.begin(), results.end(),
+                                       [b](const FoilResults& r) { return r.block == static_cast<Index>(b); });
+    for (std::size_t e = 0; e < elements; ++e) {
+      if (of_block == results.end()) {
+        mean.values.push_back(std::nan(""));
+        continue;
+      }
+      const std::size_t points = of_block->thickness.size() / elements;
+      double sum = 0;
+      for (std::size_t k = e * points; k < (e + 1) * points; ++k) {
+        const double* c = of_block->cauchy.data() + 3 * k;
+        sum += von_mises_of(eigenvalues(c[0], c[1], c[2]));
+      }
+      mean.values.push_back(sum / static_cast<double>(points));
+    }
+  }
+  state.fields.push_back(std::move(mean));
   for (const FoilResults& r : results) {
     state.fields.push_back({"cauchy_stress." + r.name, "Pa", Location::gauss, 3, r.block, r.cauchy});
     state.fields.push_back({"thickness." + r.name, "m", Location::gauss, 1, r.block, r.thickness});

@@ -43,8 +43,9 @@ void summarize_mesh(const State& state, Summary& summary);
 // Writes the keys foils.<name>.* .
 void summarize(const FoilResults& results, Summary& summary);
 
-// Adds the fields that ParaView shows: displacement, von_mises, principal stresses and strains at the nodes (a node on
-// the rim belongs to all foils: the value of larger magnitude), stress at the stress points of each foil.
+// Adds the fields that ParaView shows: displacement; von_mises, principal stresses and strains at the nodes of each
+// foil
+// (`von_mises.upper`); the mean von Mises stress of each element; stress and thickness at the stress points.
 void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> start, State& state);
 
 } // namespace pneuma::stages::common

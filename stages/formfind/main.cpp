@@ -123,8 +123,10 @@ int run(int argc, char** argv) {
     summary.set(key + "gauge_pressure", chamber.gauge_pressure);
     summary.set(key + "absolute_pressure", chamber.gauge_pressure + chamber.ambient_pressure);
     summary.set(key + "volume", chamber.volume);
-    base::say(fmt::format("chamber {}: {} Pa, {:.6g} m3", chamber.name, common::number(chamber.gauge_pressure),
-                          chamber.volume));
+    if (converged) {
+      base::say(fmt::format("chamber {}: {} Pa, {:.6g} m3", chamber.name, common::number(chamber.gauge_pressure),
+                            chamber.volume));
+    }
   }
 
   pipeline::state::Field displacement{"displacement", "m", pipeline::state::Location::point, 3, -1, {}};
@@ -211,8 +213,7 @@ int run(int argc, char** argv) {
   if (converged) return 0;
   const std::string pressure_key =
       state.chambers.empty() ? "" : "stages." + start.stage().id + ".gauge_pressure." + state.chambers[0].name;
-  base::warn(common::place(start.workflow, pressure_key) + verdict);
-  return static_cast<int>(base::ExitCode::no_equilibrium);
+  throw base::Error(base::ExitCode::no_equilibrium, common::place(start.workflow, pressure_key) + verdict);
 }
 
 } // namespace

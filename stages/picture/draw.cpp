@@ -51,6 +51,7 @@ using pipeline::state::State;
 struct Shown {
   Location location = Location::point;
   std::vector<double> values; // empty: the mesh alone
+  bool per_block = false;     // values at the nodes for each block in turn
   std::string title;
   double low = 0, high = 1;         // ends of the colour scale
   double smallest = 0, largest = 0; // finite values
@@ -65,13 +66,54 @@ struct ScaledUnit {
 constexpr ScaledUnit scaled_units[] = {{"Pa", 1e5, 1e6, "MPa"}, {"Pa", 1e2, 1e3, "kPa"}, {"N/m", 1e2, 1e3, "kN/m"},
                                        {"m", 1e-1, 1, "m"},     {"m", 1e-4, 1e-3, "mm"}, {"m", 0, 1e-6, "\u00b5m"}};
 
-const Field& field_called(const State& state, const std::string& name) {
+// The field of that name; or, where the foils have one each at their nodes (`name.foil`: on the rim they differ), all
+// of them one after the other, NaN for a block without.
+struct Found {
+  Field field;
+  bool per_block = false; // values [block][node][component]
+};
+
+Found field_called(const State& state, const std::string& name) {
   std::vector<std::string> names;
   for (const Location location : {Location::point, Location::cell}) {
     for (const Field& field : state.fields) {
       if (field.location != location) continue;
-      if (field.name == name) return field;
+      if (field.name == name) return {field, false};
       names.push_back(field.name);
+    }
+  }
+  Found found;
+  found.per_block = true;
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const auto of_block = [&](const geometry::Block& block) {
+    return std::find_if(state.fields.begin(), state.fields.end(), [&](const Field& field) {
+      return field.location == Location::point && field.name == name + "." + block.name;
+    });
+  };
+  for (const geometry::Block& block : state.mesh.blocks) {
+    const auto field = of_block(block);
+    if (field == state.fields.end()) continue;
+    found.field.name = name;
+    found.field.unit = field->unit;
+    found.field.components = field->components;
+  }
+  if (!found.field.name.empty()) {
+    const std::size_t size = state.mesh.nodes.size() * static_cast<std::size_t>(found.field.components);
+    for (const geometry::Block& block : state.mesh.blocks) {
+      const auto field = of_block(block);
+      const std::vector<double> values =
+          field == state.fields.end() ? std::vector<double>(size, nothing) : field->values;
+      found.field.values.insert(found.field.values.end(), values.begin(), values.end());
+    }
+    return found;
+  }
+  for (const geometry::Block& block : state.mesh.blocks) {
+    const std::string ending = "." + block.name;
+    for (std::size_t i = 0, count = names.size(); i < count; ++i) {
+      const std::size_t length = names[i].size();
+      if (length <= ending.size() || names[i].compare(length - ending.size(), ending.size(), ending) != 0) continue;
+      const std::string family = names[i].substr(0, length - ending.size());
+      if (std::find(names.begin(), names.end(), family) == names.end()) names.push_back(family);
     }
   }
   names.emplace_back("none");
@@ -112,8 +154,9 @@ void open_up(double& low, double& high) {
 
 Shown shown(const State& state, const Options& options) {
   if (options.field == "none") return {};
-  const Field& field = field_called(state, options.field);
+  const auto [field, per_block] = field_called(state, options.field);
   Shown what;
+  what.per_block = per_block;
   what.location = field.location;
   what.values = one_number_each(field, options.component);
   std::string unit = field.unit == "1" ? "" : field.unit;
@@ -186,9 +229,14 @@ std::vector<Surface> surfaces_of(const State& state, const Shown& what, const Op
       of_elements.assign(next, end);
       next = end;
     }
-    const bool at_nodes = what.location == Location::point;
-    surfaces.push_back(surface_of(mesh, mesh.blocks[b], lifted, at_nodes ? what.values : std::vector<double>{},
-                                  of_elements, divisions));
+    std::vector<double> at_nodes;
+    if (what.location == Location::point && what.per_block) {
+      const auto begin = what.values.begin() + static_cast<std::ptrdiff_t>(b * mesh.nodes.size());
+      at_nodes.assign(begin, begin + static_cast<std::ptrdiff_t>(mesh.nodes.size()));
+    } else if (what.location == Location::point) {
+      at_nodes = what.values;
+    }
+    surfaces.push_back(surface_of(mesh, mesh.blocks[b], lifted, at_nodes, of_elements, divisions));
   }
   return surfaces;
 }

@@ -133,4 +133,29 @@ TEST(Recovery, LineLoadOfAUniformTractionIsThatTraction) {
   }
 }
 
+TEST(Recovery, LineLoadOfASquaresEdgesDoesNotOvershootAtItsCorners) {
+  for (const ElementType type : all_elements) {
+    const Mesh mesh = meshing::mesh_plan(Rectangle{1, 1}, {type, {}, std::array{6, 6}});
+    // 70 N/m outwards on every edge
+    std::vector<double> force(3 * mesh.nodes.size(), 0.0);
+    const std::size_t step = is_quadratic(type) ? 2 : 1;
+    for (const Edge& edge : mesh.edges) {
+      for (std::size_t k = 0; k + step < edge.nodes.size(); k += step) {
+        const std::array<std::size_t, 3> i = {k, k + 1, k + step};
+        const std::array<double, 3> weight =
+            is_quadratic(type) ? std::array{1.0 / 6, 4.0 / 6, 1.0 / 6} : std::array{0.5, 0.0, 0.5};
+        const Vec3 middle = mesh.nodes[static_cast<std::size_t>(edge.nodes[edge.nodes.size() / 2])];
+        for (std::size_t a = 0; a < 3; ++a) {
+          for (std::size_t c = 0; c < 2; ++c) {
+            force[3 * static_cast<std::size_t>(edge.nodes[i[a]]) + c] +=
+                70.0 / 6 * weight[a] * middle.normalized()[static_cast<Eigen::Index>(c)];
+          }
+        }
+      }
+    }
+    for (const Vec3& q : recovery::line_load(mesh, mesh.nodes, force).load)
+      EXPECT_NEAR(q.norm(), 70, 1e-9) << name_of(type);
+  }
+}
+
 } // namespace
