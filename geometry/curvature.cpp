@@ -78,9 +78,10 @@ std::vector<Vec3> rough_normals(const Mesh& mesh, const Block& block, std::span<
   for (Index e = 0; e < mesh.element_count(block); ++e) {
     const auto nodes = mesh.element_nodes(block, e);
     Vec3 normal = Vec3::Zero();
-    for (std::size_t k = 1; k + 1 < corners; ++k)
+    for (std::size_t k = 1; k + 1 < corners; ++k) {
       normal += (positions[at(nodes[k])] - positions[at(nodes[0])])
                     .cross(positions[at(nodes[k + 1])] - positions[at(nodes[0])]);
+    }
     for (const Index i : nodes) normals[at(i)] += normal;
   }
   for (Vec3& normal : normals) normal.normalize();

@@ -192,10 +192,11 @@ Gap GapSearch::search(std::span<const Vec3> positions) {
   std::optional<Grid> grid; // made when a point has left its element
   for (Sample& sample : samples_) {
     Vec3 point;
-    if (sample.node >= 0)
+    if (sample.node >= 0) {
       point = local_.col(sample.node);
-    else
+    } else {
       point = gather<E>(local_, upper_, sample.element) * shape_functions<E>(sample.xi, sample.eta).value;
+    }
     const Vec2 at = point.head<2>();
     std::optional<double> height = height_at<E>(gather<E>(local_, lower_, sample.hint), at);
     if (!height) {

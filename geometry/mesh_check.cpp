@@ -188,31 +188,35 @@ struct Checker {
       const std::pair ends(side.low, side.high);
       if (last - first == 1) {
         const auto found = std::lower_bound(edge_sides.begin(), edge_sides.end(), ends);
-        if (found != edge_sides.end() && *found == ends)
+        if (found != edge_sides.end() && *found == ends) {
           edge_met[static_cast<std::size_t>(found - edge_sides.begin())] = true;
-        else
+        } else {
           report.add(FaultKind::side_without_edge, Severity::error, place,
                      fmt::format("{} has an open side that belongs to no edge", name(block, side.element)));
+        }
       } else if (last - first > 2) {
         report.add(FaultKind::non_manifold_side, Severity::error, place,
                    fmt::format("{} elements of {} meet at one side", last - first, block.name));
       } else {
         const Side& other = sides[first + 1];
-        if (side.forward == other.forward)
+        if (side.forward == other.forward) {
           report.add(
               FaultKind::flipped_neighbour, Severity::error, place,
               fmt::format("elements {} and {} of {} look to opposite sides", side.element, other.element, block.name));
-        if (side.middle != other.middle)
+        }
+        if (side.middle != other.middle) {
           report.add(FaultKind::torn_side, Severity::error, place,
                      fmt::format("elements {} and {} of {} have different mid-side nodes", side.element, other.element,
                                  block.name));
+        }
       }
     }
     for (std::size_t k = 0; k < edge_sides.size(); ++k) {
-      if (!edge_met[k])
+      if (!edge_met[k]) {
         report.add(FaultKind::edge_inside, Severity::error,
                    (node(edge_sides[k].first) + node(edge_sides[k].second)) / 2,
                    fmt::format("an edge runs where {} has no open side", block.name));
+      }
     }
   }
 
@@ -230,9 +234,10 @@ struct Checker {
       report.add(FaultKind::repeated_node, Severity::error, place, fmt::format("{} has a node twice", name(block, e)));
       return;
     }
-    if (std::all_of(nodes.begin(), nodes.end(), [&](Index i) { return on_edge[at(i)]; }))
+    if (std::all_of(nodes.begin(), nodes.end(), [&](Index i) { return on_edge[at(i)]; })) {
       report.add(FaultKind::held_element, Severity::error, place,
                  fmt::format("{} has all its nodes on edges", name(block, e)));
+    }
 
     Eigen::Matrix<double, 3, n> x;
     for (int k = 0; k < n; ++k) x.col(k) = node(nodes[at(k)]);
@@ -252,10 +257,11 @@ struct Checker {
                  fmt::format("{} has no area, or corners on a line", name(block, e)));
       return;
     }
-    if (smallest < needle_angle || longest > long_aspect * shortest)
+    if (smallest < needle_angle || longest > long_aspect * shortest) {
       report.add(FaultKind::needle_element, Severity::warning, place,
                  fmt::format("{} is a needle: angle {:.2g} degrees, sides 1 : {:.3g}", name(block, e),
                              smallest / degree, longest / shortest));
+    }
 
     static const auto samples = [] { // where the Jacobian is looked at: pressure points and corners
       std::vector<Eigen::Matrix<double, n, 2>> derivatives;

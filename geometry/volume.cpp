@@ -20,7 +20,7 @@ double volume_below(const Mesh& mesh, const Block& block, std::span<const Vec3> 
 
 double enclosed_volume(const Mesh& mesh, const Block& outer, const Block& inner, std::span<const Vec3> positions) {
   // an origin on the common surface keeps the two terms small
-  const Vec3 origin = positions[static_cast<std::size_t>(outer.connectivity.front())];
+  const Vec3& origin = positions[static_cast<std::size_t>(outer.connectivity.front())];
   return volume_below(mesh, outer, positions, origin) - volume_below(mesh, inner, positions, origin);
 }
 

@@ -44,10 +44,11 @@ std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options) {
   if (options.divisions) {
     n = *options.divisions;
     for (std::size_t k = 0; k < 2; ++k) {
-      if (n[k] < of.least[k])
+      if (n[k] < of.least[k]) {
         throw base::InputError(
             fmt::format("mesh divisions {} {}: at least {} are needed, or elements have no free node", n[k], of.name[k],
                         of.least[k]));
+      }
     }
   } else {
     const double size = *options.size;

@@ -147,7 +147,7 @@ Filling fill(std::span<const Vec2> ring, bool quadrilaterals) {
   const Session session;
   std::string reason;
   try {
-    const Filling filling = fill_scaled(ring, quadrilaterals, (low + high) / 2, extent);
+    Filling filling = fill_scaled(ring, quadrilaterals, (low + high) / 2, extent);
     if (!filling.triangles.empty() || !filling.quadrilaterals.empty()) return filling;
     reason = complaint();
   } catch (const std::string& message) { // what gmsh 4.8 throws

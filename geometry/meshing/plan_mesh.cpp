@@ -31,16 +31,17 @@ void check_plan(const Plan& plan) {
   } else {
     const double around = perimeter(plan);
     // an equilateral triangle has area / perimeter^2 = 0.048
-    if (!std::isfinite(around) || !(area(plan) > 1e-4 * around * around))
+    if (!std::isfinite(around) || !(area(plan) > 1e-4 * around * around)) {
       throw base::GeometryError(fmt::format("plan: the three points of the triangle lie on a line, or nearly so (area "
                                             "{:.3g} m2 with a perimeter of {:.3g} m)",
                                             area(plan), around));
+    }
   }
 }
 
 // the middle of a side of the rim, on the curve of the plan
 Vec2 rim_middle(const Plan& plan, const Vec2& a, const Vec2& b) {
-  const Vec2 chord = (a + b) / 2;
+  Vec2 chord = (a + b) / 2;
   if (const auto* circle = std::get_if<Circle>(&plan)) return chord * (circle->radius / chord.norm());
   return chord;
 }

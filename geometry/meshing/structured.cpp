@@ -16,12 +16,13 @@ namespace {
 
 // Adds the quadrilateral a b c d, or its two triangles divided along a-c or b-d.
 void add_cell(CornerMesh& mesh, Index a, Index b, Index c, Index d, bool along_ac) {
-  if (mesh.corners == 4)
+  if (mesh.corners == 4) {
     mesh.cells.insert(mesh.cells.end(), {a, b, c, d});
-  else if (along_ac)
+  } else if (along_ac) {
     mesh.cells.insert(mesh.cells.end(), {a, b, c, a, c, d});
-  else
+  } else {
     mesh.cells.insert(mesh.cells.end(), {a, b, d, b, c, d});
+  }
 }
 
 // Adds an n x m grid of cells; node(i, j) is the number of a grid point. Diagonals alternate: for even divisions the
@@ -200,10 +201,11 @@ CornerMesh quadrilaterals_in_triangle(const Triangle& plan, int h) {
 CornerMesh mesh_triangle(const Triangle& plan, const MeshOptions& options) {
   const int n = divisions_of(plan, options)[0];
   const bool triangles = corners_per_element(options.element) == 3;
-  if (!triangles && n % 2 != 0)
+  if (!triangles && n % 2 != 0) {
     throw base::InputError(fmt::format("mesh divisions {}: quadrilaterals on a triangular plan need an even number of "
                                        "divisions per side, such as {}",
                                        n, n + 1));
+  }
   return triangles ? triangles_in_triangle(plan, n) : quadrilaterals_in_triangle(plan, n / 2);
 }
 

@@ -52,9 +52,10 @@ Rim circle_rim(double radius, int count) {
 Rim rim_of(const Plan& plan, const MeshOptions& options) {
   const bool quadrilaterals = corners_per_element(options.element) == 4;
   const auto [n, m] = divisions_of(plan, options);
-  if (quadrilaterals && (n % 2 != 0 || (std::holds_alternative<Rectangle>(plan) && m % 2 != 0)))
+  if (quadrilaterals && (n % 2 != 0 || (std::holds_alternative<Rectangle>(plan) && m % 2 != 0))) {
     throw base::InputError(fmt::format("mesh divisions {}: unstructured quadrilaterals need even numbers of divisions",
                                        n % 2 != 0 ? n : m));
+  }
   if (const auto* circle = std::get_if<Circle>(&plan)) return circle_rim(circle->radius, 4 * n);
   if (const auto* rectangle = std::get_if<Rectangle>(&plan)) {
     const double x = rectangle->length / 2;

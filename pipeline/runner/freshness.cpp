@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,8 +13,8 @@
 
 namespace pneuma::pipeline::runner {
 
-StageFiles::StageFiles(const std::filesystem::path& stage_folder)
-    : folder(stage_folder), config(folder / "stage.yaml"), state(folder / "state.hdf"),
+StageFiles::StageFiles(std::filesystem::path stage_folder)
+    : folder(std::move(stage_folder)), config(folder / "stage.yaml"), state(folder / "state.hdf"),
       digest(folder / "state.hdf.sha256"), summary(folder / "summary.json"), log(folder / "log.txt"),
       provenance(folder / "provenance.json") {}
 

@@ -11,7 +11,7 @@ namespace pneuma::pipeline::runner {
 
 // The files of one stage in its output folder.
 struct StageFiles {
-  explicit StageFiles(const std::filesystem::path& stage_folder);
+  explicit StageFiles(std::filesystem::path stage_folder);
   std::filesystem::path folder, config, state, digest, summary, log, provenance;
 };
 

@@ -58,7 +58,7 @@ Json body_of(const Option& option) {
     return json;
   }
   case Type::quantity:
-    return {{"type", "string"}, {"pattern", "^\\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\\s*[^0-9\\s].*$"}};
+    return {{"type", "string"}, {"pattern", R"(^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[^0-9\s].*$)"}};
   case Type::choice: {
     Json names = Json::array();
     for (const Option& allowed : option.members) names.push_back(allowed.name);

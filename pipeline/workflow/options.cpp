@@ -16,7 +16,6 @@ using schema::list;
 using schema::number;
 using schema::Option;
 using schema::quantity;
-using schema::Range;
 using schema::table;
 using schema::text;
 using schema::value;

@@ -202,7 +202,7 @@ Node load_node(const Load& load) {
   } else if (const auto* snow = std::get_if<SnowLoad>(&load.kind)) {
     add(node, "snow", quantity(snow->weight, "Pa"));
   } else {
-    const PatchLoad& patch = std::get<PatchLoad>(load.kind);
+    const auto& patch = std::get<PatchLoad>(load.kind);
     Node item = empty_map();
     add(item, "center", lengths(patch.center.x(), patch.center.y()));
     add(item, "size", lengths(patch.size.x(), patch.size.y()));

@@ -27,6 +27,7 @@ geometry::Mesh make_mesh(const workflow::Cushion& cushion, const workflow::MeshS
                                                                             : meshing::Pattern::structured;
   const geometry::Mesh plan = meshing::mesh_plan(cushion.plan, options);
   std::vector<meshing::Layer> layers;
+  layers.reserve(cushion.foils.size() + 1);
   for (const workflow::FoilSettings& foil : cushion.foils) layers.push_back({foil.name, geometry::BlockKind::foil});
   if (cushion.rigid_base) layers.push_back({"base", geometry::BlockKind::base});
   return meshing::stack(plan, layers);

@@ -126,7 +126,7 @@ TEST(House, EverySourceNamesItsLicenceAndKeepsItsNamespace) {
   for (const Source& source : sources(source_folders)) {
     EXPECT_EQ(source.text.rfind("// SPDX-License-Identifier: GPL-3.0-or-later\n", 0), 0u) << source.path;
     std::string expected = "namespace pneuma::" + fs::path(source.path).parent_path().generic_string();
-    for (std::size_t at; (at = expected.find('/')) != std::string::npos;) expected.replace(at, 1, "::");
+    for (std::size_t at = 0; (at = expected.find('/')) != std::string::npos;) expected.replace(at, 1, "::");
     EXPECT_NE(source.text.find(expected), std::string::npos) << source.path << " is not in " << expected;
   }
 }

@@ -21,7 +21,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 using testing::UnorderedElementsAre;
 
 // `fail-ID`: ends with the code in it; `slow-ID`: works for a minute; `meet-ID`: needs the stage named in it at its
