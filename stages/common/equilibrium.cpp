@@ -131,10 +131,11 @@ private:
         if (!drive_.contact_stops) base::warn(*contact_found_ + " (goes on: contact is ignored)");
       }
     }
-    write_history(step, c);
+    const std::vector<FoilResults> foils = results(c);
+    write_history(step, c, foils);
     if (drive_.steps && step.end_of_part) {
       const Clock clock;
-      State state = make_state(c, results(c));
+      State state = make_state(c, foils);
       state.provenance.converged = true;
       state.provenance.load_factor = step.load_factor;
       state.provenance.verdict = fmt::format("step {} of the path", step.number);
@@ -153,14 +154,14 @@ private:
     return all;
   }
 
-  void write_history(const path::Step& step, const assembly::Configuration& c) {
+  void write_history(const path::Step& step, const assembly::Configuration& c, const std::vector<FoilResults>& foils) {
     History::Row row{{"step", step.number}, {"load_factor", step.load_factor}, {"iterations", step.iterations}};
     for (std::size_t i = 0; i < drive_.state.chambers.size(); ++i) {
       const std::string chamber = "chambers." + drive_.state.chambers[i].name + ".";
       row.emplace_back(chamber + "gauge_pressure", c.pressures[static_cast<Eigen::Index>(i)]);
       row.emplace_back(chamber + "volume", system_.chamber_volume(static_cast<Index>(i)));
     }
-    for (const FoilResults& r : results(c)) {
+    for (const FoilResults& r : foils) {
       const std::string foil = "foils." + r.name + ".";
       row.emplace_back(foil + "sag", r.sag);
       row.emplace_back(foil + "max_deflection", r.max_deflection);
