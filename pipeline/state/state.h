@@ -20,13 +20,20 @@ inline constexpr int schema_version = 1;
 // Where a state comes from. Text only: nothing here takes part in computing.
 struct Provenance {
   std::string program;                       // "pneuma-inflate 0.1.0"
-  std::string stage_kind;                    // mesh, formfind, inflate, wind
+  std::string stage_kind;                    // mesh, formfind, pattern, inflate, wind
   std::string stage_id;                      // key in the workflow file
   std::map<std::string, std::string> inputs; // name -> sha256 (state, ...)
   std::string settings;                      // effective settings of the stage, as YAML
   std::string verdict;                       // one sentence: how it converged
   bool converged = false;                    // false: the last good state of a stage that did not reach its end
   double load_factor = 0;                    // reached, 0 .. 1
+};
+
+// A weld between two strips of a foil.
+struct Seam {
+  std::string name;          // "S2"
+  Index left = 0, right = 0; // numbers of the strips on both sides, seen along the seam
+  std::vector<Index> nodes;  // of the mesh, from end to end, mid-side nodes included; shared by both strips
 };
 
 // A foil (or the rigid base); entry i belongs to block i of the mesh. A base has no reference, history or thickness.
@@ -46,6 +53,11 @@ struct Foil {
   // Material history [element][point][component]; names and count of the components; empty: the law has none.
   std::vector<double> history;
   std::vector<std::string> history_names;
+  // Welded from strips: their names, the strip of every element, and the welds; empty: one piece. The strips' flat
+  // shapes are the reference: every strip has plane coordinates of its own (z = 0), its roll direction along x.
+  std::vector<std::string> strips;
+  std::vector<Index> strip_of_element;
+  std::vector<Seam> seams;
 };
 
 enum class GasLaw : std::uint8_t { regulated, closed, volume };

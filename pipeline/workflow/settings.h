@@ -109,6 +109,37 @@ struct InflateSettings {
   Control control;
 };
 
+enum class CuttingLines : std::uint8_t { geodesic, straight };
+enum class ChosenBy : std::uint8_t { distortion, waste };
+
+// Width of the film as bought; selvedge: not used along both its edges; weld: width of the overlap, m.
+struct Roll {
+  double width = 1.55, weld = 0.012, selvedge = 0.01;
+};
+
+// How much smaller than the form the strips are cut, so that they stretch to it.
+struct Compensation {
+  enum class Kind : std::uint8_t { none, elastic, given } kind = Kind::none;
+  double warp = 0, weft = 0; // given: flat length = (1 - value) x length on the form
+  double creep = 0;          // beside the elastic strain, in both directions
+};
+
+struct PatternSettings {
+  // what decides the layout: a number of strips, the roll (the fewest strips that fit), or given curves
+  std::optional<int> strips_per_foil;
+  Roll roll;
+  bool roll_given = false;                                            // then every strip must fit on it
+  std::map<std::string, std::vector<std::vector<base::Vec2>>> curves; // foil -> curves in plan, m
+  CuttingLines lines = CuttingLines::geodesic;
+  std::optional<double> direction; // rad, of the strips' length from the plan's x axis; none: auto
+  ChosenBy chosen_by = ChosenBy::distortion;
+  Compensation compensation;
+  double decompensation = 0;      // m, width of the zone along clamped edges where the compensation fades in; 0: none
+  std::vector<std::string> foils; // to be cut; empty: all that are not flat
+  double clamp_allowance = 0.03;  // m
+  double notch_spacing = 0.5;     // m
+};
+
 struct RegulatedGas {
   std::optional<double> gauge_pressure; // Pa; none: as in the `from` state
 };
@@ -157,10 +188,10 @@ struct WindSettings {
 
 struct StageSettings {
   std::string id;
-  std::string run;      // mesh, formfind, inflate, wind
+  std::string run;      // mesh, formfind, pattern, inflate, wind
   std::string from;     // stage id; empty for mesh
   std::string from_run; // kind of the stage it starts from
-  std::variant<MeshSettings, FormfindSettings, InflateSettings, WindSettings> settings;
+  std::variant<MeshSettings, FormfindSettings, PatternSettings, InflateSettings, WindSettings> settings;
   SolverOptions options;
   Mark mark;
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace pneuma::geometry {
+
+using base::Vec2;
+
+// A block's surface as a graph over the plan: over every place (x, y) lies one point of it, found by a grid of cells
+// and Newton's method in the element's own coordinates.
+class Chart {
+public:
+  // Copies what it needs. Throws GeometryError with the place where the surface stands upright or folds over.
+  Chart(const Mesh& mesh, const Block& block, std::span<const Vec3> positions);
+
+  struct Place {
+    Index element = 0;
+    double xi = 0, eta = 0;
+  };
+  // None where the surface does not reach.
+  std::optional<Place> locate(const Vec2& plan) const;
+
+  // The point over a place in plan, and the unit normal there. Beside the surface (a curved rim's sagitta) the nearest
+  // element is extrapolated; farther than an element's size away: throws GeometryError.
+  Vec3 lift(const Vec2& plan) const;
+  Vec3 normal(const Vec2& plan) const;
+};
+
+} // namespace pneuma::geometry
