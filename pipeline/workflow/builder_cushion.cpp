@@ -24,7 +24,6 @@ using schema::text_of;
 namespace {
 
 constexpr const char* base_wall = "base";
-constexpr const char* all_foils = "all";
 
 std::string folder_relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
   if (file.is_absolute() == folder.is_absolute()) {
@@ -309,10 +308,14 @@ void Builder::read_walls(const Value& between, ChamberSettings& chamber, std::ma
 }
 
 void Builder::copy_origin(const std::string& from, const std::string& to) {
-  const auto known = workflow_.origins.find(from);
-  if (known == workflow_.origins.end()) return;
-  const Mark mark = known->second;
-  workflow_.origins[to] = mark;
+  std::map<std::string, Mark> copies;
+  if (const auto known = workflow_.origins.find(from); known != workflow_.origins.end()) copies[to] = known->second;
+  const std::string inside = from + ".";
+  for (auto at = workflow_.origins.lower_bound(inside); at != workflow_.origins.end() && at->first.starts_with(inside);
+       ++at) {
+    copies[to + "." + at->first.substr(inside.size())] = at->second;
+  }
+  for (const auto& [path, mark] : copies) workflow_.origins[path] = mark;
 }
 
 } // namespace pneuma::pipeline::workflow

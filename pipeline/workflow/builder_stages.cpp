@@ -21,11 +21,10 @@ using schema::optional_number;
 using schema::suggestion;
 using schema::text_of;
 
-namespace {
-
-constexpr const char* all_foils = "all";
-
-} // namespace
+void Builder::refuse(const Value& stage, const std::string& key, const std::string& reason) {
+  const Value* value = stage.find(key);
+  if (value != nullptr && value->given) fail(value->key, fmt::format("`{}` {}; leave it out", key, reason));
+}
 
 void Builder::add_mesh(const Value& mesh) {
   MeshSettings out;
@@ -165,6 +164,8 @@ void Builder::add_stage(const std::string& id, const Value& stage, const std::ma
   const std::string path = "stages." + id;
   if (out.run == "formfind") {
     out.settings = formfind_of(stage, path);
+  } else if (out.run == "pattern") {
+    out.settings = pattern_of(stage, path);
   } else if (out.run == "inflate") {
     out.settings = inflate_of(stage, path, out.from_run);
   } else if (out.run == "wind") {
@@ -187,8 +188,10 @@ void Builder::check_from(const std::string& id, const Value& stage, const Value&
                                        schema::joined(ids)));
   }
   if (in_cycle(id, from, known)) return;
-  static const std::map<std::string, std::vector<std::string>> starts = {
-      {"formfind", {"mesh"}}, {"inflate", {"mesh", "formfind"}}, {"wind", {"inflate"}}};
+  static const std::map<std::string, std::vector<std::string>> starts = {{"formfind", {"mesh"}},
+                                                                         {"pattern", {"formfind"}},
+                                                                         {"inflate", {"mesh", "formfind", "pattern"}},
+                                                                         {"wind", {"inflate"}}};
   const auto allowed = starts.find(out.run);
   if (!stage.valid || allowed == starts.end() || out.from_run.empty()) return;
   if (std::find(allowed->second.begin(), allowed->second.end(), out.from_run) != allowed->second.end()) return;
@@ -251,6 +254,10 @@ InflateSettings Builder::inflate_of(const Value& stage, const std::string& path,
     }
     if (prestress != nullptr) {
       fail(prestress->key, "`prestress` is for a start from mesh; from a formfind stage use `reference: prestressed`");
+    }
+  } else if (from_run == "pattern") {
+    for (const char* key : {"reference", "prestress"}) {
+      refuse(stage, key, "cannot stand beside a start from a pattern stage: the flat strips are the reference");
     }
   } else if (from_run == "mesh" && reference != nullptr) {
     fail(reference->key, "`reference` is for a start from a formfind stage; from mesh the flat plan is the reference");
