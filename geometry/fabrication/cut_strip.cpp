@@ -109,17 +109,11 @@ void remove_loops(const FlatStrip& strip, double size, std::vector<Vec2>& ring) 
     outer.insert(outer.end(), ring.begin(), from);
     inner.push_back(at);
     outer.push_back(at);
-    const auto is_loop = [&](const std::vector<Vec2>& part) {
-      return signed_area(part) <= 0 &&
-             std::all_of(part.begin(), part.end(), [&](const Vec2& p) { return (p - at).norm() <= size; });
-    };
-    if (is_loop(inner)) {
-      ring = std::move(outer);
-    } else if (is_loop(outer)) {
-      ring = std::move(inner);
-    } else {
+    if (std::abs(signed_area(inner)) > std::abs(signed_area(outer))) inner.swap(outer);
+    if (std::any_of(inner.begin(), inner.end(), [&](const Vec2& p) { return (p - at).norm() > size; })) {
       refuse(strip, "the cut outline crosses itself: a smaller allowance or other lines are needed", at);
     }
+    ring = std::move(outer);
   }
 }
 
@@ -152,17 +146,13 @@ Vec2 nearest_on(const std::vector<Vec2>& ring, const Vec2& point) {
 void add_notches(const Side& side, const Allowances& allowances, CutStrip& cut) {
   const double own_length = length(side);
   const double parts = std::ceil(std::max(own_length, side.mate_length) / allowances.notch_spacing * (1 - 1e-9));
+  const auto step = [&](std::size_t i) -> Vec2 { return side.points[i + 1] - side.points[i]; };
   std::size_t i = 0;
   double passed = 0; // length up to point i
   for (int k = 1; k < parts; ++k) {
     const double at = k / parts * own_length;
-    double step = (side.points[1] - side.points[0]).norm();
-    while (passed + step < at && i + 2 < side.points.size()) {
-      passed += step;
-      ++i;
-      step = (side.points[i + 1] - side.points[i]).norm();
-    }
-    const Vec2 along = (side.points[i + 1] - side.points[i]) / step;
+    while (passed + step(i).norm() < at && i + 2 < side.points.size()) passed += step(i++).norm();
+    const Vec2 along = step(i).normalized();
     const NetEdge edge = {side.points[i], along, allowances.seam};
     const Vec2 net = side.points[i] + (at - passed) * along;
     const int number = side.reversed ? static_cast<int>(parts) - k : k;

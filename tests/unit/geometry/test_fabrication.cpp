@@ -102,7 +102,7 @@ TEST(CutStrip, OfAnEquilateralTriangleHasSharpCorners) {
 TEST(CutStrip, ASharpWedgeIsCutOffSquareAtTwiceTheAllowance) {
   const double d = 0.01;
   const CutStrip cut = cut_strip(triangle({-4, -0.2}, {0, 0}, {-4, 0.2}), {d, d, 0});
-  ASSERT_EQ(cut.outline.size(), 5u);
+  ASSERT_EQ(cut.outline.size(), 4u);
   EXPECT_NEAR(cut.high.x(), mitre_limit * d, 1e-12);
   EXPECT_EQ(std::count_if(cut.outline.begin(), cut.outline.end(),
                           [&](const Vec2& p) { return std::abs(p.x() - cut.high.x()) < 1e-12; }),
@@ -137,7 +137,7 @@ TEST(CutStrip, OfAHollowSideKeepsItsDistanceEverywhere) {
   EXPECT_FALSE(crossing_sides(cut.outline));
   for (const Vec2& p : cut.outline) {
     EXPECT_GE(distance_to(cut.net, p), d - 1e-9);
-    EXPECT_LE(distance_to(cut.net, p), std::sqrt(2) * d + 1e-9);
+    EXPECT_LE(distance_to(cut.net, p), std::sqrt(2) * d + 1e-3); // the corners, of nearly 90 degrees
   }
   const double closed_form = pi / 4 * (std::pow(3 + d, 2) - std::pow(2 - d, 2)) + 2 * d * (1 + 2 * d);
   EXPECT_NEAR(cut.area, closed_form, 1e-3);
