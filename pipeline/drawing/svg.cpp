@@ -60,9 +60,9 @@ void write_line(const Polyline& line, std::string& out) {
 }
 
 void write_text(const Text& text, std::string& out) {
-  fmt::format_to(std::back_inserter(out), R"(<text font-size="{:.2f}" transform="translate({}) rotate({:.3f})">{}</text>)",
-                 mm * text.height / capital_height, pair(text.at, ' '), -text.angle * 180 / std::numbers::pi,
-                 escaped(text.text));
+  fmt::format_to(
+      std::back_inserter(out), R"xml(<text font-size="{:.2f}" transform="translate({}) rotate({:.3f})">{}</text>)xml",
+      mm * text.height / capital_height, pair(text.at, ' '), -text.angle * 180 / std::numbers::pi, escaped(text.text));
   out += '\n';
 }
 

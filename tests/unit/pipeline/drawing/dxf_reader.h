@@ -25,7 +25,7 @@ public:
   struct Text {
     std::string layer, text;
     base::Vec2 at;
-    double height, angle; // degrees
+    double height, angle; // rad
   };
   std::map<std::string, int> layers; // -> colour
   std::vector<Line> lines;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <numbers>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +48,7 @@ TEST_F(DxfReadBack, HasTextsWithPlaceHeightAndAngle) {
   EXPECT_EQ(contents.texts[0].layer, "TEXT");
   EXPECT_LT((contents.texts[0].at - base::Vec2(500, 250)).norm(), 1e-6);
   EXPECT_NEAR(contents.texts[0].height, 40, 1e-6);
-  EXPECT_NEAR(contents.texts[1].angle, 0.5 * 180 / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(contents.texts[1].angle, 0.5, 1e-9);
 }
 
 TEST_F(DxfReadBack, SaysThatItIsR12InMillimetresAndHowLarge) {
