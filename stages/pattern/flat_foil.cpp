@@ -224,6 +224,8 @@ std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, con
         out.seam = true;
         out.mate = strip_name(name, seam.left == static_cast<Index>(s) ? seam.right : seam.left);
         out.reversed = side.reversed;
+        const auto& [left, right] = foil.seam_lengths[at(side.seam)];
+        out.mate_length = seam.left == static_cast<Index>(s) ? right : left;
       } else if (side.edge >= 0) {
         out.name = mesh.edges[at(side.edge)].name;
       }
