@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +13,12 @@ namespace pneuma::geometry {
 
 using base::Index;
 using base::Vec3;
+
+// One number for a side, from either end.
+inline std::uint64_t side_key(Index a, Index b) {
+  const auto [low, high] = std::minmax(a, b);
+  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
+}
 
 // Membrane elements. Node order as in VTK and gmsh: corners, mid-sides 01 12 23 (30), centre.
 enum class ElementType : std::uint8_t { T3, T6, Q4, Q9 };

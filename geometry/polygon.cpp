@@ -12,7 +12,12 @@ namespace pneuma::geometry {
 
 namespace {
 
-// Whether the segments a-b and c-d have a point in common.
+bool in_triangle(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+  return cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 && cross(a - c, p - c) >= 0;
+}
+
+} // namespace
+
 bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto apart = [](const Vec2& p, const Vec2& q, const Vec2& r, const Vec2& s) {
     const double first = cross(q - p, r - p);
@@ -23,12 +28,6 @@ bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
       (a.cwiseMax(b).array() < c.cwiseMin(d).array()).any() || (c.cwiseMax(d).array() < a.cwiseMin(b).array()).any();
   return !boxes_apart && !apart(a, b, c, d) && !apart(c, d, a, b);
 }
-
-bool in_triangle(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
-  return cross(b - a, p - a) >= 0 && cross(c - b, p - b) >= 0 && cross(a - c, p - c) >= 0;
-}
-
-} // namespace
 
 double signed_area(std::span<const Vec2> ring) {
   double doubled = 0;

@@ -18,6 +18,9 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+// Whether the segments a-b and c-d have a point in common.
+bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
 // Polygons are rings of points; the last is followed by the first.
 
 double signed_area(std::span<const Vec2> ring); // positive counterclockwise

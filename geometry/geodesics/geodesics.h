@@ -18,10 +18,12 @@ struct Path {
 // other.
 Path shortest_path(const Triangulation& surface, Index from, Index to);
 
-// Relaxes a line to the nearest local minimum of length on the triangles: the points slide on the sides that the line
-// crosses (a convex problem for a given sequence of sides, Newton's method), and where it runs into a vertex the line
-// is led around the other side of it if that is shorter, until nothing changes. `start`: a line in plan from vertex
-// `from` to vertex `to`, near the wanted one; the surface must be a graph over the plan.
+// The locally shortest line near a given one, exact on the triangles: the shortest within the strip of triangles that
+// the line passes (unfolded, funnel algorithm of Lee and Preparata 1984: the minimum of the convex length over the
+// points on the sides crossed), which is led around the other side of every vertex it bends at where that is shorter,
+// until it bends at none (Xin and Wang 2007). The time grows with the number of triangles. `start`: a line in plan from
+// vertex `from` to vertex `to`, near the wanted one; the surface must be a graph over the plan. Throws GeometryError
+// where the triangles below the start do not hang together.
 Path relaxed(const Triangulation& surface, Index from, Index to, const std::vector<base::Vec2>& start);
 
 } // namespace pneuma::geometry::geodesics

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <vector>
 
 #include "geometry/base/types.h"
@@ -12,12 +10,6 @@
 namespace pneuma::geometry::meshing {
 
 using base::Vec2;
-
-// One number for a side, from either end.
-inline std::uint64_t side_key(Index a, Index b) {
-  const auto [low, high] = std::minmax(a, b);
-  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
-}
 
 // A mesh of a plan reduced to its corners: what the meshers make, and what mesh_plan completes with mid-side nodes.
 struct CornerMesh {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/meshing/divisions.h"
-#include "geometry/meshing/fill.h"
+#include "geometry/meshing/filled.h"
 
 namespace pneuma::geometry::meshing {
 
@@ -72,64 +72,11 @@ Rim rim_of(const Plan& plan, const MeshOptions& options) {
   return polygon_rim({p[0], p[1], p[2]}, divisions);
 }
 
-// Divides every element of the filling of every second point of the rim into quadrilaterals around its centre.
-CornerMesh divided(const Rim& rim) {
-  std::vector<Vec2> coarse;
-  for (std::size_t k = 0; k < rim.points.size(); k += 2) coarse.push_back(rim.points[k]);
-  const Filling filling = fill(coarse, true);
-
-  CornerMesh mesh;
-  mesh.corners = 4;
-  mesh.points = rim.points;
-  mesh.edges = rim.edges;
-  const std::size_t ring = coarse.size();
-  const auto shift = static_cast<Index>(rim.points.size() - ring);
-  const auto point = [&](Index i) { return static_cast<std::size_t>(i) < ring ? 2 * i : i + shift; };
-  mesh.points.insert(mesh.points.end(), filling.points.begin() + static_cast<std::ptrdiff_t>(ring),
-                     filling.points.end());
-  std::unordered_map<std::uint64_t, Index> middle_of; // of the sides, by the coarse points at their ends
-  for (std::size_t k = 0; k < ring; ++k)
-    middle_of[side_key(static_cast<Index>(k), static_cast<Index>((k + 1) % ring))] = static_cast<Index>(2 * k + 1);
-
-  const auto divide = [&](std::span<const Index> cell) {
-    const std::size_t n = cell.size();
-    const auto centre = static_cast<Index>(mesh.points.size());
-    Vec2 sum = Vec2::Zero();
-    for (const Index i : cell) sum += filling.points[static_cast<std::size_t>(i)];
-    mesh.points.push_back(sum / static_cast<double>(n));
-    const auto middle = [&](std::size_t k) {
-      const Index a = cell[k];
-      const Index b = cell[(k + 1) % n];
-      const auto [found, fresh] = middle_of.try_emplace(side_key(a, b), static_cast<Index>(mesh.points.size()));
-      if (fresh) {
-        mesh.points.push_back(
-            (filling.points[static_cast<std::size_t>(a)] + filling.points[static_cast<std::size_t>(b)]) / 2);
-      }
-      return found->second;
-    };
-    for (std::size_t k = 0; k < n; ++k) {
-      const Index before = middle((k + n - 1) % n);
-      const Index after = middle(k);
-      mesh.cells.insert(mesh.cells.end(), {point(cell[k]), after, centre, before});
-    }
-  };
-  for (const auto& cell : filling.quadrilaterals) divide(cell);
-  for (const auto& cell : filling.triangles) divide(cell);
-  return mesh;
-}
-
 } // namespace
 
 CornerMesh unstructured_mesh(const Plan& plan, const MeshOptions& options) {
-  const Rim rim = rim_of(plan, options);
-  if (corners_per_element(options.element) == 4) return divided(rim);
-  const Filling filling = fill(rim.points, false);
-  CornerMesh mesh;
-  mesh.points = filling.points;
-  mesh.edges = rim.edges;
-  for (const auto& cell : filling.triangles) mesh.cells.insert(mesh.cells.end(), cell.begin(), cell.end());
-  release_rim(mesh);
-  return mesh;
+  Rim rim = rim_of(plan, options);
+  return filled(rim.points, std::move(rim.edges), corners_per_element(options.element));
 }
 
 } // namespace pneuma::geometry::meshing

@@ -34,11 +34,11 @@ struct CutMesh {
 // distances of about `size`, each strip filled in plan (gmsh), nodes lifted to the surface; rim nodes (mid-side nodes
 // too) exactly on the rim and shared by all blocks, seam nodes shared by both strips, interior mid-side nodes over the
 // middle of their side in plan. Ends of different foils' lines that are closer than a third of an element become one.
-// Strips are numbered from left to right seen along the first line (strips at the left of all lines first; in general:
-// by the position of their centre across the lines' mean direction, from right-hand side y- to y+ of the direction).
+// Strips are numbered from left to right seen along the lines: by the positions of their centres across the lines' mean
+// direction (lines that run against the first one are turned for it).
 // The result passes check_mesh without errors. The same input gives the same mesh.
 // Throws GeometryError with the place and what would work where a strip is too narrow for the mesh size (fewer than two
-// sides of an element along a line or across a strip), or lines cross.
+// sides of an element along a line or across a strip), a line comes too near to the rim, or lines cross.
 CutMesh cut(const Plan& plan, const Mesh& old, std::span<const Cut> foils, double size);
 
 } // namespace pneuma::geometry::strips

@@ -53,7 +53,7 @@ bool in(const std::string& path, const std::string& folder) {
 // geometry/base <- geometry <- {solver, pipeline} <- stages/common <- one stage
 bool allowed(const std::string& from, const std::string& to) {
   if (in(from, "geometry/base")) return in(to, "geometry/base");
-  if (in(from, "geometry/meshing")) return in(to, "geometry");
+  if (in(from, "geometry/meshing") || in(from, "geometry/strips")) return in(to, "geometry");
   if (in(from, "geometry")) return in(to, "geometry") && !in(to, "geometry/meshing");
   if (in(from, "solver")) return in(to, "geometry") || in(to, "solver");
   if (in(from, "pipeline")) return in(to, "geometry") || in(to, "pipeline");
