@@ -193,6 +193,7 @@ void read_node_lists(const Group& group, std::vector<Line>& lines, const std::st
 
 void write_edges(const Group& group, const geometry::Mesh& mesh) {
   std::vector<std::uint8_t> closed;
+  closed.reserve(mesh.edges.size());
   for (const geometry::Edge& edge : mesh.edges) closed.push_back(edge.closed ? 1 : 0);
   group.write("name", column(mesh.edges, &geometry::Edge::name));
   write_list(group, "closed", closed, "1");

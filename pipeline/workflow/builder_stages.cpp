@@ -34,6 +34,7 @@ void Builder::add_mesh(const Value& mesh) {
   const auto found = std::find(names.begin(), names.end(), element);
   if (found != names.end()) out.element = static_cast<geometry::ElementType>(found - names.begin());
   out.size = optional_number(mesh, "size");
+  const bool is_polygon = plan_known_ && std::holds_alternative<geometry::Polygon>(workflow_.cushion.plan);
   if (const Value* divisions = mesh["divisions"]) {
     const bool is_pair = !divisions->items.empty();
     const double first = is_pair ? divisions->items[0].number : divisions->number;
@@ -41,12 +42,17 @@ void Builder::add_mesh(const Value& mesh) {
     out.divisions = {static_cast<int>(first), static_cast<int>(second)};
     if (is_pair && plan_known_ && std::holds_alternative<geometry::Triangle>(workflow_.cushion.plan)) {
       fail(divisions->mark, "a triangle has one number of `divisions`, along each side");
+    } else if (is_pair && is_polygon) {
+      fail(divisions->mark, "a polygon has one number of `divisions`, along its longest side");
     }
     for (const char* end : {"0", "1"}) {
       copy_origin("mesh.divisions", std::string("mesh.divisions.") + end);
     }
   }
   const std::string pattern = text_of(mesh, "pattern");
+  if (pattern == "structured" && is_polygon) {
+    fail(mesh["pattern"]->mark, "a polygon has no structured pattern; allowed: unstructured");
+  }
   if (!pattern.empty()) {
     out.pattern = pattern == "structured" ? MeshPattern::structured : MeshPattern::unstructured;
   }

@@ -75,7 +75,7 @@ Option site() {
 }
 
 Option plan() {
-  const char* shapes = "rectangle, circle and triangle are available";
+  const char* shapes = "rectangle, circle, triangle and polygon are available";
   return variant("plan", "shape",
                  {group("rectangle", {length("length", "along x").required(), length("width", "along y").required()},
                         "edges south, east, north, west"),
@@ -85,9 +85,14 @@ Option plan() {
                          list("points", point("corner", "a corner"), "the three corners").items(3, 3)},
                         "edges e1, e2, e3")
                       .exactly_one({"side", "points"}),
+                  group("polygon",
+                        {list("points", point("corner", "a corner"), "corners in order, either way round")
+                             .items(3, 100000)
+                             .required()},
+                        "edges e1 (from the first point to the second), e2, ...; re-entrant corners are allowed"),
                   group("regular_polygon", {}, "").unavailable(shapes), group("outline", {}, "").unavailable(shapes),
                   group("file", {}, "").unavailable(shapes)},
-                 "the clamped outline, centred on the origin in z = 0");
+                 "the clamped outline in z = 0; rectangle and circle are centred on the origin");
 }
 
 Option cushion() {

@@ -79,9 +79,9 @@ Node plan_node(const geometry::Plan& plan) {
     add(node, "shape", scalar("circle"));
     add(node, "radius", quantity(circle->radius, "m"));
   } else {
-    add(node, "shape", scalar("triangle"));
+    add(node, "shape", scalar(std::holds_alternative<geometry::Triangle>(plan) ? "triangle" : "polygon"));
     Node points = empty_list();
-    for (const base::Vec2& point : std::get<geometry::Triangle>(plan).points) {
+    for (const base::Vec2& point : geometry::corner_points(plan)) {
       points.items.push_back(lengths(point.x(), point.y()));
     }
     add(node, "points", points);

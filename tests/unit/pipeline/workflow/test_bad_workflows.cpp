@@ -62,6 +62,7 @@ TEST_P(BadWorkflow, IsToldWhatAndWhere) {
   expect_messages(bad.before, bad.after, bad.messages);
 }
 
+constexpr const char* rectangle = "{shape: rectangle, length: 6 m, width: 3 m}";
 constexpr const char* foil = "{name: upper, material: etfe, thickness: 250 um}";
 constexpr const char* mesh = "mesh: {element: T6, size: 0.15 m}";
 constexpr const char* form =
@@ -151,11 +152,44 @@ const Bad cases[] = {
     {"UnknownShape",
      "shape: rectangle",
      "shape: @rectangel",
-     {"`shape` must be one of: rectangle, circle, triangle, not `rectangel`; did you mean `rectangle`?"}},
-    {"PolygonPlan",
+     {"`shape` must be one of: rectangle, circle, triangle, polygon, not `rectangel`; did you mean `rectangle`?"}},
+    {"RegularPolygonPlan",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "{shape: @regular_polygon, sides: 6, radius: 2 m}",
-     {"`shape: regular_polygon` is not available yet; rectangle, circle and triangle are available"}},
+     {"`shape: regular_polygon` is not available yet; rectangle, circle, triangle and polygon are available"}},
+    {"PolygonWithoutPoints",
+     rectangle,
+     "@{shape: polygon}",
+     {"`plan` lacks the key `points`: corners in order, either way round (a list [...])"}},
+    {"PolygonOfTwoPoints",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [1 m, 1 m]]}",
+     {"`points` must have at least 3 entries, not 2"}},
+    {"PolygonPointWithoutUnit",
+     rectangle,
+     "{shape: polygon, points: [[0 m, 0 m], [1 m, @1], [2 m, 5 m]]}",
+     {"`1` has no unit; expected a length"}},
+    {"PolygonPointInSpace",
+     rectangle,
+     "{shape: polygon, points: [[0 m, 0 m], @[1 m, 1 m, 0 m], [2 m, 5 m]]}",
+     {"entry 2 of `points` must have 2 entries, not 3"}},
+    {"PolygonThatCrossesItself",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [2 m, 0 m], [0 m, 2 m], [2 m, 2 m]]}",
+     {"the outline crosses or touches itself: its edges e2 from (2, 0) and e4 from (2, 2) meet"}},
+    {"PolygonWithARepeatedPoint",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [2 m, 0 m], [200 cm, 0 m], [2 m, 2 m]]}",
+     {"the points 2 and 3 of the outline are the same, (2, 0); leave one out"}},
+    {"PolygonWithoutArea",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
+     {"the points of the outline lie on a line, or nearly so"}},
+    {"UnknownEdgeOfAPolygon",
+     "{shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n",
+     "{shape: polygon, points: [[0 m, 0 m], [2 m, 0 m], [2 m, 2 m], [0 m, 1 m]]}\n  edges: {e1: clamped, @e5: "
+     "clamped}\n",
+     {"the plan has no edge `e5`; did you mean `e1`?; its edges: e1, e2, e3, e4"}},
     {"TriangleWithoutSize",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "@{shape: triangle}",
@@ -163,7 +197,7 @@ const Bad cases[] = {
     {"FlatTriangle",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "{shape: triangle, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
-     {"the three `points` lie on a line"}},
+     {"the points of the outline lie on a line, or nearly so"}},
     {"SizeAndDivisions",
      mesh,
      "mesh: @{size: 0.15 m, divisions: 4}",
@@ -358,6 +392,19 @@ const Bad cases[] = {
      "thickness: @250 kPa}\n    - {name: middle, material: @etff, @colour: red, thickness: @-1 mm}",
      {"has a unit of another kind", "there is no material `etff`", "unknown key `colour`", "must be positive"}},
 };
+
+TEST(BadPolygonMesh, IsToldWhatIsAllowed) {
+  const std::string polygon =
+      replaced(example, rectangle, "{shape: polygon, points: [[0 m, 0 m], [2 m, 0 m], [2 m, 2 m], [0 m, 1 m]]}");
+  const Folder folder;
+  const auto message = [&](const char* keys) {
+    const ReadResult result = read_workflow(folder.write("w.yaml", replaced(polygon, mesh, keys)));
+    return result.problems.size() == 1 ? result.problems[0].message : "no problem, or several";
+  };
+  EXPECT_EQ(message("mesh: {size: 0.15 m, pattern: structured}"),
+            "a polygon has no structured pattern; allowed: unstructured");
+  EXPECT_EQ(message("mesh: {divisions: [6, 4]}"), "a polygon has one number of `divisions`, along its longest side");
+}
 
 // The keys of a pattern stage of the example, and the messages.
 struct BadPatternKeys {

@@ -217,6 +217,18 @@ TEST(GoodWorkflow, ImplausiblePatternsAreWarnings) {
               testing::AllOf(HasSubstr("`clamp` 1 m is unusual"), HasSubstr("`notches` 1 mm is unusual")));
 }
 
+TEST(GoodWorkflow, PolygonHasItsPointsAsTheyStandAndAnEdgeASide) {
+  const Workflow workflow = read_good(replaced(
+      replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}",
+               "{shape: polygon, points: [[0 m, 0 m], [0 m, 3 m], [100 cm, 3 m], [1 m, 1 m], [4 m, 1 m], [4 m, 0 m]]}"),
+      "size: 0.15 m", "divisions: 12, pattern: unstructured"));
+  const auto& polygon = std::get<geometry::Polygon>(workflow.cushion.plan);
+  ASSERT_EQ(polygon.points.size(), 6U);
+  EXPECT_EQ(polygon.points[2], base::Vec2(1, 3));
+  EXPECT_EQ(workflow.cushion.edges.size(), 6U);
+  EXPECT_EQ(workflow.cushion.edges.at("e6"), "clamped");
+}
+
 TEST(GoodWorkflow, ThesisGasLawIsAnAmbientPressureOfZero) {
   const Workflow workflow =
       read_good(replaced(example, "cushion:\n", "site: {ambient_pressure: 0 Pa, gravity: off}\ncushion:\n"));
@@ -288,6 +300,9 @@ std::vector<std::string> varied() {
       example,
       replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}", "{shape: circle, radius: 123.4 cm}"),
       replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}", "{shape: triangle, side: 3.3 m}"),
+      replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}",
+               "{shape: polygon, points: [[0 m, 0 m], [0 m, 33 dm], [123.4 cm, 3.3 m], [1234 mm, 1 m], [6 m, 1 m], [6 "
+               "m, 0 m]]}"),
       replaced(example, "{element: T6, size: 0.15 m}",
                "{element: Q9, divisions: [12, 7], stress_rule: reduced, pattern: structured}"),
       replaced(example, "{element: T6, size: 0.15 m}", "{element: T3, divisions: 9, pattern: unstructured}"),
