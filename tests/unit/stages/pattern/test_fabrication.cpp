@@ -11,6 +11,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/polygon.h"
+#include "pipeline/drawing/drawing.h"
 #include "tests/unit/pipeline/drawing/dxf_reader.h"
 #include "tests/unit/pipeline/state/temporary_folder.h"
 
