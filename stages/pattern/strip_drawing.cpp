@@ -21,6 +21,7 @@ using geometry::fabrication::Placement;
 using geometry::fabrication::Side;
 using pipeline::drawing::Drawing;
 using pipeline::drawing::Text;
+using pipeline::drawing::text_width;
 
 constexpr double largest_letter = 0.04;   // m
 constexpr double smallest_letter = 0.003; // m
@@ -63,16 +64,17 @@ bool inside(const std::vector<Vec2>& ring, const Box& box) {
 Text centred(const std::string& letters, const Vec2& centre, Vec2 along, double height) {
   if (along.x() < -1e-9 || (along.x() < 1e-9 && along.y() < 0)) along = -along;
   Text text = {"TEXT", centre, height, std::atan2(along.y(), along.x()), letters};
-  text.at -= width(text) / 2 * along + height / 2 * up_from(along);
+  text.at -= text_width(letters, height) / 2 * along + height / 2 * up_from(along);
   return text;
 }
 
 Box box_of(const Text& text) {
   const Vec2 along(std::cos(text.angle), std::sin(text.angle));
+  const double half_width = text_width(text.text, text.height) / 2;
   const double clearance = 0.2 * text.height;
-  return {text.at + width(text) / 2 * along + text.height / 2 * up_from(along),
+  return {text.at + half_width * along + text.height / 2 * up_from(along),
           along,
-          {width(text) / 2 + clearance, text.height / 2 + clearance}};
+          {half_width + clearance, text.height / 2 + clearance}};
 }
 
 // The middle of the widest stretch of a vertical line inside a ring.
@@ -129,8 +131,8 @@ public:
 
 private:
   // Half the size of the block of name, roll direction and dimensions, in letters' heights.
-  Vec2 half_block(double letter) const {
-    const double name = width({"TEXT", {}, 2 * letter, 0, flat_.name}) / 2 / letter;
+  Vec2 half_block() const {
+    const double name = text_width(flat_.name, 2) / 2;
     return {std::max(name, 7.0) + 1.5, 4};
   }
 
@@ -143,7 +145,7 @@ private:
       for (int k = 0; k < 2 * places; ++k) {
         const double shift = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * size.x() / (2 * places);
         const auto middle = middle_at(net_, centre.x() + shift);
-        if (middle && inside(net_, {*middle, Vec2::UnitX(), letter * half_block(letter)})) return {*middle, letter};
+        if (middle && inside(net_, {*middle, Vec2::UnitX(), letter * half_block()})) return {*middle, letter};
       }
     }
     return {middle_at(net_, centre.x()).value_or(centre), smallest_letter};
@@ -153,14 +155,15 @@ private:
   void draw_middle() {
     const auto [centre, letter] = find_middle();
     letter_ = letter;
-    const double half = letter * (half_block(letter).x() - 1.5);
+    const double half = letter * (half_block().x() - 1.5);
     const Vec2 middle = centre - Vec2(letter, 0);
     const Vec2 x = Vec2::UnitX();
     const Vec2 y = Vec2::UnitY();
-    taken_.push_back({centre, x, letter * half_block(letter)});
+    taken_.push_back({centre, x, letter * half_block()});
     drawing_.texts.push_back(centred(flat_.name, middle + 2.9 * letter * y, x, 2 * letter));
     drawing_.texts.push_back(centred("ROLL DIRECTION", middle + letter * y, x, 0.8 * letter));
-    arrow("WARP", middle - half * x, middle + half * x);
+    line("WARP", middle - half * x, middle + half * x);
+    head("WARP", middle + half * x, x);
     dimension_length(middle - 2.7 * letter * y);
     dimension_width(middle + half * x + 2 * letter * x + 0.8 * letter * y);
   }
@@ -171,21 +174,19 @@ private:
     taken_.push_back(line_box(from, to));
   }
 
-  void arrow(const char* layer, const Vec2& from, const Vec2& to) {
-    line(layer, from, to);
-    const Vec2 back = letter_ * (from - to).normalized();
-    drawing_.lines.push_back({layer, false, {to + back + 0.35 * up_from(back), to, to + back - 0.35 * up_from(back)}});
+  void head(const char* layer, const Vec2& tip, const Vec2& along) {
+    const Vec2 barb = 0.25 * letter_ * up_from(along);
+    const Vec2 back = tip - 0.8 * letter_ * along;
+    drawing_.lines.push_back({layer, false, {back + barb, tip, back - barb}});
   }
 
-  // A dimension line with oblique strokes at its ends; its number, in mm, at the side of `text`.
+  // A line with an arrow at both ends and its length, in mm, beside the foot of `text`.
   void dimension(const Vec2& from, const Vec2& to, const Vec2& text) {
-    line("DIM", from, to);
-    for (const Vec2& end : {from, to}) {
-      const Vec2 stroke = Vec2::Constant(0.3 * letter_);
-      line("DIM", end - stroke, end + stroke);
-    }
     const Vec2 along = (to - from).normalized();
-    const Vec2 foot = from + along.dot(text - from) * along; // beside the number, 0.3 letters from the line
+    line("DIM", from, to);
+    head("DIM", from, -along);
+    head("DIM", to, along);
+    const Vec2 foot = from + along.dot(text - from) * along;
     Text number =
         centred(fmt::format("{:.1f}", 1e3 * (to - from).norm()), foot + 0.8 * letter_ * up_from(along), along, letter_);
     number.layer = "DIM";
@@ -237,7 +238,7 @@ private:
     line("NOTCH", at, end);
     write(2, 0.3 * letter_, [&](int place, double height) {
       const Vec2 along = (place == 0 ? 1 : -1) * up_from(inwards);
-      const double half = width({"TEXT", {}, height, 0, notch.name}) / 2;
+      const double half = text_width(notch.name, height) / 2;
       return centred(notch.name, end + (half + 0.3 * height) * along + 0.8 * height * inwards, along, height);
     });
   }
@@ -259,7 +260,7 @@ private:
   void label(const Side& side) {
     const std::string letters = side.seam ? fmt::format("{} TO {}", side.name, side.mate) : side.name;
     const double height = 0.6 * letter_;
-    const bool is_long = length(side) > 6 * width({"TEXT", {}, height, 0, letters});
+    const bool is_long = length(side) > 6 * text_width(letters, height);
     const auto along_side = [&](double middle, double spread) {
       constexpr int places = 13;
       write(places, height, [&](int place, double h) {

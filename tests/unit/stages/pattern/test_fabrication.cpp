@@ -76,7 +76,9 @@ protected:
   void SetUp() override {
     // to look at the drawing
     if (const char* keep = std::getenv("PNEUMA_KEEP")) {
-      std::filesystem::copy(folder.path(), keep, std::filesystem::copy_options::overwrite_existing);
+      std::filesystem::copy(folder.path(), keep,
+                            std::filesystem::copy_options::overwrite_existing |
+                                std::filesystem::copy_options::recursive);
     }
   }
 
@@ -144,8 +146,7 @@ TEST_F(PatternOfADisc, NamesNotchesAlikeOnBothStrips) {
 std::vector<Vec2> corners(const DxfContents::Text& text) {
   const Vec2 along(std::cos(text.angle), std::sin(text.angle));
   const Vec2 up = text.height * Vec2(-along.y(), along.x());
-  const Vec2 end =
-      text.at + pipeline::drawing::letter_width * text.height * static_cast<double>(text.text.size()) * along;
+  const Vec2 end = text.at + pipeline::drawing::text_width(text.text, text.height) * along;
   return {text.at, end, end + up, text.at + up};
 }
 
@@ -224,7 +225,7 @@ TEST(Fabrication, RefusesANarrowRollUnlessItMayWiden) {
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   const Fabrication result = fabricate("upper", disc(), allowances, {1.2, 0.01, 0.01, true}, folder.path());
-  EXPECT_NEAR(result.roll_width, result.strips[0].cut_width + 0.02, 1e-9);
+  EXPECT_NEAR(result.roll_width, result.strips[0].cut_width + 0.02, 1e-6);
 }
 
 TEST(Fabrication, QuotesNamesInTables) {
