@@ -231,8 +231,7 @@ private:
   }
 
   void draw_notch(const Notch& notch) {
-    const double turn = placement_.turned ? -1 : 1;
-    const Vec2 inwards = turn * notch.inwards;
+    const Vec2 inwards = notch.inwards;
     const Vec2 at = placement_(notch.at);
     const Vec2 end = at + notch_length_ * inwards;
     line("NOTCH", at, end);
