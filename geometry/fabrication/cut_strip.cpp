@@ -14,7 +14,7 @@ namespace pneuma::geometry::fabrication {
 
 namespace {
 
-constexpr double same_point = 1e-9; // m: far below what is cut, far above rounding
+constexpr double same_point = 1e-7; // m: far below what can be cut, far above rounding
 
 // A straight piece of the net outline, on its way counterclockwise.
 struct NetEdge {
@@ -119,7 +119,7 @@ std::vector<Vec2> offset(const FlatStrip& strip, const std::vector<NetEdge>& edg
   const auto last =
       std::unique(ring.begin(), ring.end(), [](const Vec2& a, const Vec2& b) { return (a - b).norm() <= same_point; });
   ring.erase(last, ring.end());
-  remove_loops(strip, mitre_limit * std::max(allowances.seam, allowances.clamp), ring);
+  remove_loops(strip, 2 * mitre_limit * std::max(allowances.seam, allowances.clamp), ring);
   return ring;
 }
 

@@ -115,10 +115,8 @@ public:
       : flat_(flat), cut_(cut), placement_(placement), notch_length_(notch_length), drawing_(drawing) {
     for (const Vec2& point : cut.net) net_.push_back(placement(point));
     for (const Vec2& point : cut.outline) outline_.push_back(placement(point));
-    const Vec2 one = placement(cut.low);
-    const Vec2 other = placement(cut.high);
-    low_ = one.cwiseMin(other);
-    high_ = one.cwiseMax(other);
+    low_ = placement(cut.low);
+    high_ = placement(cut.high);
   }
 
   void draw() {
@@ -133,7 +131,7 @@ private:
   // Half the size of the block of name, roll direction and dimensions, in letters' heights.
   Vec2 half_block() const {
     const double name = text_width(flat_.name, 2) / 2;
-    return {std::max(name, 7.0) + 1.5, 4};
+    return {std::max(name, 7.0) + 1.5, 4.4};
   }
 
   // The largest letters with which the block fits, and its centre; as near to the middle of the strip as can be.
@@ -160,7 +158,7 @@ private:
     const Vec2 x = Vec2::UnitX();
     const Vec2 y = Vec2::UnitY();
     taken_.push_back({centre, x, letter * half_block()});
-    drawing_.texts.push_back(centred(flat_.name, middle + 2.9 * letter * y, x, 2 * letter));
+    drawing_.texts.push_back(centred(flat_.name, middle + 3.3 * letter * y, x, 2 * letter));
     drawing_.texts.push_back(centred("ROLL DIRECTION", middle + letter * y, x, 0.8 * letter));
     line("WARP", middle - half * x, middle + half * x);
     head("WARP", middle + half * x, x);
@@ -304,12 +302,9 @@ void draw_roll(double length, double width, double selvedge, Drawing& drawing) {
     drawing.lines.push_back({"DIM", false, {{0, selvedge}, {length, selvedge}}});
     drawing.lines.push_back({"DIM", false, {{0, width - selvedge}, {length, width - selvedge}}});
   }
-  drawing.texts.push_back(
-      {"DIM",
-       {0, width + largest_letter},
-       largest_letter,
-       0,
-       fmt::format("{}: ROLL {:.0f} mm, {:.0f} mm USED", drawing.title, 1e3 * width, 1e3 * length)});
+  const double letter = std::min(largest_letter, width / 20);
+  const std::string size = fmt::format("ROLL {:.0f} mm, {:.0f} mm USED", 1e3 * width, 1e3 * length);
+  drawing.texts.push_back({"DIM", {0, width + letter}, letter, 0, fmt::format("{}: {}", drawing.title, size)});
 }
 
 } // namespace pneuma::stages::pattern
