@@ -24,7 +24,7 @@ using pipeline::drawing::Text;
 using pipeline::drawing::text_width;
 
 constexpr double largest_letter = 0.04;   // m
-constexpr double smallest_letter = 0.003; // m
+constexpr double smallest_letter = 0.001; // m
 constexpr double same_height = 1e-6;      // m
 
 Vec2 up_from(const Vec2& along) {
