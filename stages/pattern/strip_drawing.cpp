@@ -31,6 +31,11 @@ Vec2 up_from(const Vec2& along) {
   return {-along.y(), along.x()};
 }
 
+// 0, -1, 1, -2, 2, ...
+int to_both_sides(int k) {
+  return (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2);
+}
+
 // A rectangle in any direction; a line if one half size is zero.
 struct Box {
   Vec2 centre, along, half;
@@ -141,7 +146,7 @@ private:
     const Vec2 centre = (low_ + high_) / 2;
     for (double letter = std::min(largest_letter, size.minCoeff() / 12); letter > smallest_letter; letter *= 0.9) {
       for (int k = 0; k < 2 * places; ++k) {
-        const double shift = (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * size.x() / (2 * places);
+        const double shift = to_both_sides(k) * size.x() / (2 * places);
         const auto middle = middle_at(net_, centre.x() + shift);
         if (middle && inside(net_, {*middle, Vec2::UnitX(), letter * half_block()})) return {*middle, letter};
       }
@@ -261,7 +266,7 @@ private:
     const auto along_side = [&](double middle, double spread) {
       constexpr int places = 13;
       write(places, height, [&](int place, double h) {
-        const double shift = (place % 2 == 0 ? 1 : -1) * ((place + 1) / 2) * spread / (places - 1);
+        const double shift = to_both_sides(place) * spread / (places - 1);
         const auto [at, along] = point_on(side, middle + shift);
         return centred(letters, at + 1.1 * h * up_from(along), along, h);
       });
