@@ -14,7 +14,7 @@ namespace pneuma::geometry::fabrication {
 
 namespace {
 
-constexpr double same_point = 1e-9; // m: far below what is cut, far above rounding
+constexpr double same_point = 1e-7; // m: far below what can be cut, far above rounding
 
 // A straight piece of the net outline, on its way counterclockwise.
 struct NetEdge {
@@ -50,8 +50,7 @@ std::vector<NetEdge> net_edges(const FlatStrip& strip, const Allowances& allowan
   return edges;
 }
 
-// The corner of the offset between two edges: where the offset lines meet, unless that would reach too far or cut into
-// an allowance.
+// The corner of the offset between two edges: where the offset lines meet, unless that is too far away.
 void add_corner(const NetEdge& a, const NetEdge& b, std::vector<Vec2>& outline) {
   const Vec2& corner = b.from;
   const double sine = cross(a.along, b.along); // of the turn; positive: convex
@@ -65,19 +64,9 @@ void add_corner(const NetEdge& a, const NetEdge& b, std::vector<Vec2>& outline) 
     outline.emplace_back(corner + a.allowance / (1 + cosine) * (a.outwards() + b.outwards()));
     return;
   }
-  // times the sine: how far beyond its end the line of `a` meets that of `b`, and how far before its start that of `b`
-  const double beyond = b.allowance - a.allowance * cosine;
-  const double before = a.allowance - b.allowance * cosine;
-  const bool convex = sine >= 0;
-  const bool cuts_in = convex && (beyond < 0 || before < 0);
-  const bool too_far = !convex && std::hypot(beyond, a.allowance * sine) > -reach * sine;
-  if (cuts_in || too_far) {
-    outline.push_back(a.offset(corner));
-    outline.push_back(b.offset(corner));
-    return;
-  }
-  if (convex && cosine < 0) {
-    const Vec2 tip = (a.along - b.along).normalized(); // from the corner outwards, halfway between the edges
+  const double beyond = b.allowance - a.allowance * cosine; // times the sine: way of the offset of `a` past its end
+  if (sine >= 0 && cosine < 0) {                            // a wedge, perhaps a sharp one
+    const Vec2 tip = (a.along - b.along).normalized();      // from the corner outwards, halfway between the edges
     if (a.allowance * tip.dot(a.outwards()) * sine + tip.dot(a.along) * beyond > reach * sine) {
       const auto to_cut = [&](const NetEdge& edge) {
         return (reach - edge.allowance * tip.dot(edge.outwards())) / tip.dot(edge.along);
@@ -86,6 +75,10 @@ void add_corner(const NetEdge& a, const NetEdge& b, std::vector<Vec2>& outline) 
       outline.emplace_back(b.offset(corner) + to_cut(b) * b.along);
       return;
     }
+  } else if (std::hypot(beyond, a.allowance * sine) > reach * std::abs(sine)) {
+    outline.push_back(a.offset(corner));
+    outline.push_back(b.offset(corner));
+    return;
   }
   outline.emplace_back(a.offset(corner) + beyond / sine * a.along);
 }
@@ -96,8 +89,9 @@ Vec2 meeting_point(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return a + std::clamp(cross(c - a, d - c) / sine, 0.0, 1.0) * (b - a);
 }
 
-// The offset of a hollow that is narrower than twice the allowance runs backwards there: loops as small as the
-// allowance, which are cut off. A larger one means that parts of the strip would overlap.
+// Where an edge is shorter than its offset loses at its corners (hollows, the blunt corner of a seam and a clamped
+// edge) the offset runs backwards in loops as small as the allowance, which are cut off. A larger one means that parts
+// of the strip would overlap.
 void remove_loops(const FlatStrip& strip, double size, std::vector<Vec2>& ring) {
   while (const auto crossing = crossing_sides(ring)) {
     const auto [first, last] = std::minmax(crossing->first, crossing->second);
@@ -125,7 +119,7 @@ std::vector<Vec2> offset(const FlatStrip& strip, const std::vector<NetEdge>& edg
   const auto last =
       std::unique(ring.begin(), ring.end(), [](const Vec2& a, const Vec2& b) { return (a - b).norm() <= same_point; });
   ring.erase(last, ring.end());
-  remove_loops(strip, mitre_limit * std::max(allowances.seam, allowances.clamp), ring);
+  remove_loops(strip, 2 * mitre_limit * std::max(allowances.seam, allowances.clamp), ring);
   return ring;
 }
 

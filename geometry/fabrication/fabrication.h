@@ -53,20 +53,21 @@ struct CutStrip {
 constexpr double mitre_limit = 2;
 
 // The cut outline with its allowances and notches. At a corner the lines parallel to both sides are prolonged until
-// they meet; where one of them would then cut into the other side's allowance (a blunt corner between a seam and a
-// clamped edge), the outline steps from one to the other. Notches of a seam stand at the same fractions of its length
+// they meet, so that mating strips overlap by the weld's width up to the cut of a clamped edge; where that is farther
+// away than mitre_limit allows and there is no wedge (sides of different allowances in nearly one line), the outline
+// steps from one to the other. Notches of a seam stand at the same fractions of its length
 // in both strips, so that they meet when welded; they are numbered in the seam's direction. Throws GeometryError with
 // the strip's name and the place where the net outline is open or crosses itself, or the offset crosses itself (loops
 // of the allowance's size, in hollows, are cut off instead).
 CutStrip cut_strip(const FlatStrip& strip, const Allowances& allowances);
 
-// Where a strip lies on the roll: turned by half a turn or not (never mirrored, never across the roll), then moved.
+// Where a strip lies on the roll: moved only (bounding boxes gain nothing from turning, and the film has one
+// direction).
 struct Placement {
   Index strip = 0;
-  bool turned = false;
   Vec2 move; // x along the roll, y across it from its edge
 
-  Vec2 operator()(const Vec2& point) const { return (turned ? -1 : 1) * point + move; }
+  Vec2 operator()(const Vec2& point) const { return point + move; }
 };
 struct Nesting {
   std::vector<Placement> placements;

@@ -62,7 +62,7 @@ Nesting nest(const std::vector<CutStrip>& strips, const std::vector<std::string>
       shelf = shelves.insert(shelf, {start, selvedge});
       nesting.length = start + extent(i).x();
     }
-    nesting.placements.push_back({static_cast<Index>(i), false, Vec2(shelf->start, shelf->next) - strips[i].low});
+    nesting.placements.push_back({static_cast<Index>(i), Vec2(shelf->start, shelf->next) - strips[i].low});
     shelf->next += extent(i).y() + gap;
     area += strips[i].area;
   }

@@ -10,14 +10,14 @@ namespace pneuma::pipeline::drawing {
 namespace {
 
 // Letters, not bytes, of UTF-8.
-std::ptrdiff_t letters(const std::string& text) {
+std::ptrdiff_t count(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
 }
 
 } // namespace
 
-double width(const Text& text) {
-  return letter_width * text.height * static_cast<double>(letters(text.text));
+double text_width(const std::string& letters, double height) {
+  return letter_width * height * static_cast<double>(count(letters));
 }
 
 Extent extent(const Drawing& drawing) {
@@ -31,7 +31,7 @@ Extent extent(const Drawing& drawing) {
   for (const Text& text : drawing.texts) {
     const Vec2 along(std::cos(text.angle), std::sin(text.angle));
     const Vec2 up(-along.y(), along.x());
-    for (const Vec2& foot : {text.at, Vec2(text.at + width(text) * along)}) {
+    for (const Vec2& foot : {text.at, Vec2(text.at + text_width(text.text, text.height) * along)}) {
       include(foot);
       include(foot + text.height * up);
     }

@@ -36,7 +36,7 @@ struct Drawing {
 };
 
 constexpr double letter_width = 0.85; // of a letter's height: wide enough for the fonts of both formats
-double width(const Text& text);       // m
+double text_width(const std::string& letters, double height); // m
 
 // Extent of all lines and texts, m; a point at the origin if there are none.
 struct Extent {

@@ -86,11 +86,14 @@ void write_svg(const Drawing& drawing, const std::filesystem::path& file) {
   const double margin = 0.01 * size.maxCoeff() + 1;
   const Vec2 page = size.array() + 2 * margin;
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  // true to scale where it is printed, fitted to the window where it is looked at; hairlines as wide as the page asks
+  // true to scale where it is printed, fitted to the window where it is looked at; lines keep their
+  // width on the screen, or get one that suits the whole page where the reader cannot do that
   fmt::format_to(std::back_inserter(out),
                  "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.3f}mm\" height=\"{1:.3f}mm\" "
                  "viewBox=\"{2:.3f} {3:.3f} {0:.3f} {1:.3f}\" style=\"max-width:100%;max-height:100%\">\n"
                  "<title>{4}</title>\n"
+                 "<style>@supports (vector-effect: non-scaling-stroke) {{polygon, polyline {{vector-effect: "
+                 "non-scaling-stroke; stroke-width: 1.2px}}}}</style>\n"
                  "<rect x=\"{2:.3f}\" y=\"{3:.3f}\" width=\"{0:.3f}\" height=\"{1:.3f}\" fill=\"#ffffff\"/>\n"
                  "<g fill=\"none\" stroke-width=\"{5:.2f}\" stroke-linejoin=\"round\" font-family=\"sans-serif\">\n",
                  page.x(), page.y(), mm * all.low.x() - margin, -mm * all.high.y() - margin, escaped(drawing.title),

@@ -208,8 +208,7 @@ std::string seam_name(Index seam) {
   return fmt::format("S{}", seam + 1);
 }
 
-std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, const geometry::Mesh& mesh, Index block,
-                                                       const strips::CutFoil& cut) {
+std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, const geometry::Mesh& mesh, Index block) {
   const std::string& name = mesh.blocks[at(block)].name;
   std::vector<geometry::fabrication::FlatStrip> result;
   for (std::size_t s = 0; s < foil.sides.size(); ++s) {
@@ -219,13 +218,9 @@ std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, con
       const strips::StripSide& side = foil.sides[s][k];
       geometry::fabrication::Side out;
       if (side.seam >= 0) {
-        const strips::Seam& seam = cut.seams[at(side.seam)];
         out.name = seam_name(side.seam);
         out.seam = true;
-        out.mate = strip_name(name, seam.left == static_cast<Index>(s) ? seam.right : seam.left);
         out.reversed = side.reversed;
-        const auto& [left, right] = foil.seam_lengths[at(side.seam)];
-        out.mate_length = seam.left == static_cast<Index>(s) ? right : left;
       } else if (side.edge >= 0) {
         out.name = mesh.edges[at(side.edge)].name;
       }

@@ -56,7 +56,6 @@ std::string strip_name(const std::string& foil, Index strip); // "upper-1"
 std::string seam_name(Index seam);                            // "S1"
 
 // Net outlines with names, for drawing, allowances and nesting.
-std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, const geometry::Mesh& mesh, Index block,
-                                                       const geometry::strips::CutFoil& cut);
+std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, const geometry::Mesh& mesh, Index block);
 
 } // namespace pneuma::stages::pattern

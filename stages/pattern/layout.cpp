@@ -162,7 +162,7 @@ private:
     std::vector<std::string> strip_names;
     double used = 0;
     double net = 0;
-    for (const fabrication::FlatStrip& outline : outlines(flat, mesh.mesh, 0, mesh.foils[0])) {
+    for (const fabrication::FlatStrip& outline : outlines(flat, mesh.mesh, 0)) {
       cuts.push_back(fabrication::cut_strip(outline, allowances_));
       strip_names.push_back(outline.name);
       const Vec2 box = cuts.back().high - cuts.back().low;

@@ -101,6 +101,20 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
   return welded;
 }
 
+// The drawings and tables of one foil, beside the state.
+Fabrication draw(const common::Start& start, const workflow::PatternSettings& settings, const Welded& welded,
+                 std::size_t b, const std::vector<StripQuality>& quality) {
+  std::vector<StripSheet> sheets;
+  for (geometry::fabrication::FlatStrip& strip :
+       outlines(*welded.flat[b], welded.state.mesh, static_cast<base::Index>(b))) {
+    sheets.push_back({std::move(strip), quality[sheets.size()].distortion});
+  }
+  const workflow::Roll& roll = settings.roll;
+  return fabricate(welded.state.mesh.blocks[b].name, sheets,
+                   {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+                   {roll.width, roll.selvedge, 0.01, !settings.roll_given}, start.arguments.out.parent_path());
+}
+
 int run(int argc, char** argv) {
   const common::Clock clock;
   const common::Start start = common::read_start("pattern", argc, argv);
@@ -121,7 +135,16 @@ int run(int argc, char** argv) {
     const std::string& name = welded.state.mesh.blocks[b].name;
     iterations = std::max(iterations, welded.flat[b]->flat.iterations);
     factorizations += welded.flat[b]->flat.factorizations;
-    report_strips(figures_of(welded, b), *welded.wanted[b], name, summary);
+    const std::vector<StripQuality> quality = quality_of(welded, b);
+    const Fabrication made = draw(start, settings, welded, b, quality);
+    report_strips(quality, made, *welded.wanted[b], name, summary);
+    if (made.roll_width > settings.roll.width) {
+      const std::string warning = fmt::format("the strips of foil `{}` need a roll of {:.0f} mm, {:.0f} mm are usual: "
+                                              "take more strips, or name the roll",
+                                              name, 1e3 * made.roll_width, 1e3 * settings.roll.width);
+      base::warn(warning);
+      summary.append("warnings", warning);
+    }
     summary.set("foils." + name + ".area",
                 geometry::surface_area(welded.state.mesh, welded.state.mesh.blocks[b], welded.state.mesh.nodes));
   }

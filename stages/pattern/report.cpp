@@ -41,31 +41,28 @@ double requested_along(const Wanted& wanted, const std::vector<Vec2>& side, bool
 
 } // namespace
 
-std::vector<StripFigures> figures_of(const Welded& welded, std::size_t block) {
+std::vector<StripQuality> quality_of(const Welded& welded, std::size_t block) {
   const FlatFoil& foil = *welded.flat[block];
   const Wanted& wanted = *welded.wanted[block];
   const geometry::Mesh& mesh = welded.state.mesh;
   const geometry::strips::CutFoil& cut = welded.cuts[block];
   const std::size_t points = foil.stretches.size() / cut.strip_of_element.size();
-  std::vector<StripFigures> all(at(cut.strips));
+  std::vector<StripQuality> all(at(cut.strips));
   std::vector<double> form_area(all.size(), 0.0);
   for (std::size_t k = 0; k < foil.stretches.size(); ++k) {
     const std::size_t s = at(cut.strip_of_element[k / points]);
     const solver::flattening::PointStretch& stretch = foil.stretches[k];
-    StripFigures& f = all[s];
+    StripQuality& f = all[s];
     f.distortion = std::max({f.distortion, stretch.larger - 1, 1 - stretch.smaller});
-    f.area += stretch.area * std::sqrt(stretch.inverse_metric.determinant());
     form_area[s] += stretch.area;
     // a length along x of the plane is 1 / sqrt(C11) of the one on the form
     const base::Mat2 metric = stretch.inverse_metric.inverse();
     for (int i = 0; i < 2; ++i) f.compensation[i] += stretch.area * (1 - 1 / std::sqrt(metric(i, i)));
   }
   for (std::size_t s = 0; s < all.size(); ++s) {
-    StripFigures& f = all[s];
+    StripQuality& f = all[s];
     f.name = strip_name(mesh.blocks[block].name, static_cast<Index>(s));
     for (double& c : f.compensation) c /= form_area[s];
-    Vec2 low = foil.flat.points[at(foil.flat_sides[s][0][0])];
-    Vec2 high = low;
     for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
       const geometry::strips::StripSide& side = foil.sides[s][k];
       std::vector<Vec2> flat;
@@ -73,43 +70,36 @@ std::vector<StripFigures> figures_of(const Welded& welded, std::size_t block) {
       double flat_length = 0;
       for (std::size_t i = 0; i < side.nodes.size(); ++i) {
         flat.push_back(foil.flat.points[at(foil.flat_sides[s][k][i])]);
-        low = low.cwiseMin(flat.back());
-        high = high.cwiseMax(flat.back());
         if (i == 0) continue;
         form_length += (mesh.nodes[at(side.nodes[i])] - mesh.nodes[at(side.nodes[i - 1])]).norm();
         flat_length += (flat[i] - flat[i - 1]).norm();
-      }
-      if (side.seam >= 0) {
-        const auto& [left, right] = foil.seam_lengths[at(side.seam)];
-        f.seam_mismatch = std::max(f.seam_mismatch, std::abs(left - right));
       }
       f.edges.push_back({side.seam >= 0   ? seam_name(side.seam)
                          : side.edge >= 0 ? mesh.edges[at(side.edge)].name
                                           : "",
                          requested_along(wanted, flat, side.edge >= 0), 1 - flat_length / form_length});
     }
-    f.length = high.x() - low.x();
-    f.width = high.y() - low.y();
   }
   return all;
 }
 
-void report_strips(const std::vector<StripFigures>& strips, const Wanted& wanted, const std::string& foil,
-                   common::Summary& summary) {
+void report_strips(const std::vector<StripQuality>& strips, const Fabrication& made, const Wanted& wanted,
+                   const std::string& foil, common::Summary& summary) {
   const double requested[2] = {1 - 1 / wanted.stretch[0], 1 - 1 / wanted.stretch[1]};
   const char* directions[2] = {"warp", "weft"};
   for (std::size_t s = 0; s < strips.size(); ++s) {
-    const StripFigures& f = strips[s];
+    const StripQuality& f = strips[s];
+    const StripFigures& size = made.strips[s];
     const std::string key = fmt::format("patterns.{}.strips.#{}.", foil, s);
     summary.set(key + "name", f.name);
-    summary.set(key + "width", f.width);
-    summary.set(key + "length", f.length);
-    summary.set(key + "area", f.area);
+    summary.set(key + "width", size.width);
+    summary.set(key + "length", size.length);
+    summary.set(key + "area", size.net_area);
     summary.set(key + "distortion_max", f.distortion);
-    summary.set(key + "seam_mismatch_max", f.seam_mismatch);
+    summary.set(key + "seam_mismatch_max", size.seam_mismatch_max);
     std::string line =
         fmt::format("{}: {:.0f} x {:.0f} mm, {:.3f} m2, distortion {:.3f} %, compensation wanted/got:", f.name,
-                    1e3 * f.length, 1e3 * f.width, f.area, percent(f.distortion));
+                    1e3 * size.length, 1e3 * size.width, size.net_area, percent(f.distortion));
     for (int i = 0; i < 2; ++i) {
       const std::string direction = key + "compensation." + directions[i] + ".";
       summary.set(direction + "requested", requested[i]);
@@ -133,6 +123,15 @@ void report_strips(const std::vector<StripFigures>& strips, const Wanted& wanted
       summary.append("warnings", warning);
     }
   }
+  const std::string pattern = "patterns." + foil + ".";
+  summary.set(pattern + "waste_fraction", made.nesting.waste_fraction);
+  summary.set(pattern + "weld_length", made.weld_length);
+  summary.set(pattern + "roll_width", made.roll_width);
+  summary.set(pattern + "roll_length", made.nesting.length);
+  base::say(fmt::format("{}: {:.1f} m of a roll of {:.0f} mm, waste {:.1f} %, welds {:.1f} m, mating seams differ by "
+                        "{:.2g} mm/m at most",
+                        foil, made.nesting.length, 1e3 * made.roll_width, percent(made.nesting.waste_fraction),
+                        made.weld_length, 1e3 * made.mismatch_per_length_max));
 }
 
 } // namespace pneuma::stages::pattern

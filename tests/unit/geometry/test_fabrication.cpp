@@ -160,22 +160,35 @@ TEST(CutStrip, ALensGetsBluntTips) {
   EXPECT_FALSE(crossing_sides(cut.outline));
 }
 
-TEST(CutStrip, BesideABluntCornerTheClampedEdgeKeepsItsAllowance) {
-  // 150 degrees between the clamped edge (west, north-west) and the seam above
-  const double angle = 5 * pi / 6;
-  const Vec2 corner(1, 1);
-  const Vec2 foot = corner - Vec2(std::cos(pi - angle), std::sin(pi - angle));
-  const FlatStrip strip = {"U1",
-                           {seam("S1", {foot, {3, foot.y()}}), clamp("east", {{3, foot.y()}, {3, 1}}),
-                            seam("S2", {{3, 1}, corner}), clamp("west", {corner, foot})}};
+// A clamped edge at 60 degrees to a seam along x, in pieces shorter than what the blunt corner loses: there both cuts
+// lie on the same line parallel to it, the weld's width apart along the seam's normal.
+TEST(CutStrip, MatingStripsOverlapByTheWeldUpToTheCutOfTheClampedEdge) {
+  const Vec2 down = -Vec2(std::cos(pi / 3), std::sin(pi / 3));
+  const auto edge = [&](double from) { // of length 1, towards `down`
+    std::vector<Vec2> points;
+    for (int i = 0; i <= 200; ++i) points.emplace_back((from + i / 200.0) * down);
+    return points;
+  };
+  const std::vector<Vec2> upper_edge = edge(-1);
+  const std::vector<Vec2> lower_edge = edge(0);
+  const double top = upper_edge.front().y();
+  const double bottom = lower_edge.back().y();
+  const FlatStrip upper = {
+      "U2",
+      {clamp("west", upper_edge), seam("S1", {{0, 0}, {3, 0}}), clamp("rest", {{3, 0}, {3, top}, upper_edge.front()})}};
+  const FlatStrip lower = {"U1",
+                           {clamp("west", lower_edge), clamp("rest", {lower_edge.back(), {3, bottom}, {3, 0}}),
+                            seam("S1", {{3, 0}, {0, 0}})}};
   const Allowances allowances = {0.006, 0.03, 0};
-  const CutStrip cut = cut_strip(strip, allowances);
-  const Vec2 along = (corner - foot).normalized();
-  const Vec2 outwards(-along.y(), along.x());
-  for (const double at : {0.0, 0.5, 1.0}) {
-    EXPECT_NEAR(distance_to(cut.outline, foot + at * (corner - foot) + 0.03 * outwards), 0, 1e-12) << at;
+  for (const auto& [strip, y] : {std::pair(upper, -0.006), std::pair(lower, 0.006)}) {
+    // a line parallel to the edge at 30 mm: x sin 60 - y cos 60 = -0.03
+    const Vec2 corner((y * std::cos(pi / 3) - 0.03) / std::sin(pi / 3), y);
+    const CutStrip cut = cut_strip(strip, allowances);
+    EXPECT_TRUE(std::any_of(cut.outline.begin(), cut.outline.end(), [&](const Vec2& p) {
+      return (p - corner).norm() < 1e-9;
+    })) << strip.name;
+    EXPECT_FALSE(crossing_sides(cut.outline));
   }
-  EXPECT_NEAR(distance_to(cut.outline, Vec2(1, 1.006)), 0, 1e-12);
 }
 
 TEST(CutStrip, AStraightLineOfTwoAllowancesSteps) {
