@@ -235,7 +235,12 @@ TEST_P(EveryCut, IsASoundMeshWithSeamsOnItsLines) {
   const Cushion cushion(plan, element, 0.4);
   for (const double size : {0.5, 0.25}) {
     std::vector<std::vector<CuttingLine>> lines(2);
-    for (const double x : {-0.8, 0.1, 1.0}) lines[0].push_back(cushion.line(0, {x, 0}, {0.1, 1}, geodesic));
+    for (const double aside : {-0.8, 0.1, 1.0}) {
+      // across the triangle's sides, not along them
+      const bool upright = !std::holds_alternative<Triangle>(plan);
+      lines[0].push_back(upright ? cushion.line(0, {aside, 0}, {0.1, 1}, geodesic)
+                                 : cushion.line(0, {0, 0.4 + 0.9 * aside}, {-1, -0.1}, geodesic));
+    }
     std::swap(lines[0][0], lines[0][2]); // given in another order than the strips'
     const CutMesh cut = cushion.cut_along(lines[0], {}, size);
     expect_sound(cushion, cut, lines, size);
