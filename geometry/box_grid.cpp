@@ -4,23 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/base/errors.h"
-
 namespace pneuma::geometry {
 
 BoxGrid::BoxGrid(std::span<const PlanBox> boxes) {
-  if (boxes.empty()) throw base::GeometryError("a surface without elements cannot be searched");
+  first_.assign(2, 0);
+  if (boxes.empty()) return;
   low_ = boxes.front().low;
   Vec2 high = boxes.front().high;
   for (const PlanBox& box : boxes) {
-    if (!box.low.allFinite() || !box.high.allFinite())
-      throw base::GeometryError("a surface with an element at no finite place cannot be searched");
+    if (!box.low.allFinite() || !box.high.allFinite()) return;
     low_ = low_.cwiseMin(box.low);
     high = high.cwiseMax(box.high);
   }
   const Vec2 extent = high - low_;
   const auto count = static_cast<double>(boxes.size());
-  // boxes along a line still get cells
+  // boxes that have collapsed to a line still get cells
   cell_ = std::max(std::sqrt(extent.x() * extent.y() / count), extent.maxCoeff() / count);
   if (!(cell_ > 0)) cell_ = 1;
   columns_ = static_cast<Index>(extent.x() / cell_) + 1;

@@ -18,7 +18,7 @@ struct PlanBox {
 // Boxes in plan sorted into the cells of a grid, about one box a cell, so that those near a place are found at once.
 class BoxGrid {
 public:
-  // Throws GeometryError where a box has no finite place, or there is none.
+  // Where a box has no finite place, none is found anywhere.
   explicit BoxGrid(std::span<const PlanBox> boxes);
 
   double cell() const { return cell_; } // m, side of a cell

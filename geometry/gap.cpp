@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "geometry/box_grid.h"
 #include "geometry/shape_functions.h"
 
 namespace pneuma::geometry {
@@ -17,7 +18,6 @@ namespace {
 using base::Mat2;
 using base::Mat3;
 using base::MatX;
-using base::Vec2;
 
 struct Place {
   double xi, eta;
@@ -86,67 +86,19 @@ std::optional<double> height_at(const Element<E>& x, const Vec2& at) {
   return {};
 }
 
-// Boxes of a grid in plan, each with the elements whose own box touches it.
-struct Grid {
-  Vec2 low = Vec2::Zero();
-  double box = 1; // m, side of a box
-  Index columns = 0, rows = 0;
-  std::vector<Index> first; // of each box, in `elements`
-  std::vector<Index> elements;
-
-  Index column(double x) const { return std::clamp(static_cast<Index>((x - low[0]) / box), Index{0}, columns - 1); }
-  Index row(double y) const { return std::clamp(static_cast<Index>((y - low[1]) / box), Index{0}, rows - 1); }
-  std::span<const Index> at(const Vec2& place) const {
-    if (!(place.array() >= low.array()).all() || place[0] > low[0] + box * columns || place[1] > low[1] + box * rows)
-      return {};
-    const auto b = static_cast<std::size_t>(row(place[1]) * columns + column(place[0]));
-    return std::span(elements).subspan(static_cast<std::size_t>(first[b]),
-                                       static_cast<std::size_t>(first[b + 1] - first[b]));
-  }
-};
-
 template <ElementType E>
-Grid make_grid(const MatX& local, const std::vector<Index>& connectivity) {
+BoxGrid make_grid(const MatX& local, const std::vector<Index>& connectivity) {
   const auto count = static_cast<Index>(connectivity.size()) / nodes_per_element(E);
-  std::vector<std::pair<Vec2, Vec2>> boxes;
+  std::vector<PlanBox> boxes;
   boxes.reserve(static_cast<std::size_t>(count));
   for (Index e = 0; e < count; ++e) {
     const Element<E> x = gather<E>(local, connectivity, e);
     const Vec2 low = x.template topRows<2>().rowwise().minCoeff();
     const Vec2 high = x.template topRows<2>().rowwise().maxCoeff();
     const double margin = is_quadratic(E) ? 0.2 * (high - low).maxCoeff() : 0.0;
-    boxes.emplace_back(low.array() - margin, high.array() + margin);
+    boxes.push_back({low.array() - margin, high.array() + margin});
   }
-  Grid grid;
-  Vec2 high = boxes.front().second;
-  grid.low = boxes.front().first;
-  for (const auto& [a, b] : boxes) {
-    grid.low = grid.low.cwiseMin(a);
-    high = high.cwiseMax(b);
-  }
-  const Vec2 extent = high - grid.low;
-  // about one box per element; a foil that has collapsed to a line still gets boxes
-  grid.box = std::max(std::sqrt(extent[0] * extent[1] / count), extent.maxCoeff() / count);
-  if (!(grid.box > 0) || !std::isfinite(grid.box)) return grid;
-  grid.columns = static_cast<Index>(extent[0] / grid.box) + 1;
-  grid.rows = static_cast<Index>(extent[1] / grid.box) + 1;
-
-  const auto each_box = [&](auto&& visit) {
-    for (Index e = 0; e < count; ++e) {
-      const auto& [a, b] = boxes[static_cast<std::size_t>(e)];
-      for (Index r = grid.row(a[1]); r <= grid.row(b[1]); ++r) {
-        for (Index c = grid.column(a[0]); c <= grid.column(b[0]); ++c)
-          visit(static_cast<std::size_t>(r * grid.columns + c), e);
-      }
-    }
-  };
-  grid.first.assign(static_cast<std::size_t>(grid.columns * grid.rows) + 1, 0);
-  each_box([&](std::size_t b, Index) { ++grid.first[b + 1]; });
-  for (std::size_t b = 1; b < grid.first.size(); ++b) grid.first[b] += grid.first[b - 1];
-  grid.elements.resize(static_cast<std::size_t>(grid.first.back()));
-  std::vector<Index> next = grid.first;
-  each_box([&](std::size_t b, Index e) { grid.elements[static_cast<std::size_t>(next[b]++)] = e; });
-  return grid;
+  return BoxGrid(boxes);
 }
 
 } // namespace
@@ -189,7 +141,7 @@ Gap GapSearch::search(std::span<const Vec3> positions) {
     local_.col(static_cast<Eigen::Index>(i)).noalias() = frame_ * positions[i];
 
   Gap gap;
-  std::optional<Grid> grid; // made when a point has left its element
+  std::optional<BoxGrid> grid; // made when a point has left its element
   for (Sample& sample : samples_) {
     Vec3 point;
     if (sample.node >= 0) {

@@ -255,8 +255,14 @@ void order(Division& division, const Vec2& direction) {
   }
 }
 
-void check_rim_width(const Division& division, const Outline& outline, double size) {
+// Refuses strips too small for two elements at the rim.
+void check_size(const Division& division, const Outline& outline, double size, int corners) {
   for (const Face& face : division.faces) {
+    if (corners == 4 && face.ring.size() < 6) {
+      throw GeometryError(fmt::format("the strip around {} is too small for quadrilaterals of {:.3g} m: move the line, "
+                                      "or take smaller elements",
+                                      text(face.centre), size));
+    }
     for (const std::vector<Index>& run : face.runs) {
       double width = 0;
       for (std::size_t k = 0; k + 1 < run.size(); ++k) {
@@ -271,8 +277,7 @@ void check_rim_width(const Division& division, const Outline& outline, double si
   }
 }
 
-Division divide(const Outline& outline, const RimStations& rim, std::span<const RimStations::Ends> line_ends,
-                double size) {
+Division divide(const Outline& outline, const RimStations& rim, std::span<const RimStations::Ends> line_ends) {
   const auto stations = static_cast<Index>(rim.points.size());
   Division division;
   if (outline.lines.empty()) {
@@ -301,7 +306,6 @@ Division divide(const Outline& outline, const RimStations& rim, std::span<const 
     face.centre = centre_of(ring);
   }
   order(division, mean_direction(outline));
-  check_rim_width(division, outline, size);
   return division;
 }
 
@@ -440,7 +444,8 @@ CutMesh cut(const Plan& plan, const Mesh& old, std::span<const Cut> foils, doubl
   for (std::size_t f = 0; f < foils.size(); ++f) {
     try {
       const Outline outline = outline_of(plan, foils[f], rim, rim.ends[f], size, even);
-      const Division division = divide(outline, rim, rim.ends[f], size);
+      const Division division = divide(outline, rim, rim.ends[f]);
+      check_size(division, outline, size, corners);
       check_width(plan, outline, size);
       Sheet sheet = fill_strips(outline, division, corners);
       const std::vector<std::vector<Index>> seams =
