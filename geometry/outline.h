@@ -23,13 +23,24 @@ struct Triangle {
   base::Vec2 points[3]; // m, any orientation; edges e1 (points 0-1), e2 (1-2), e3 (2-0)
 };
 
-using Plan = std::variant<Rectangle, Circle, Triangle>;
+struct Polygon {
+  std::vector<base::Vec2> points; // m, any orientation; edges e1 (points 0-1) ... en (last point-0); simple
+};
+
+using Plan = std::variant<Rectangle, Circle, Triangle, Polygon>;
 
 // An equilateral triangle centred on the origin, its first side parallel to x at negative y.
 Triangle equilateral(double side);
 
 // Edge names in the order of the outline.
 std::vector<std::string> edge_names(const Plan& plan);
+
+// Corners in the order of the edges, each the start of one, m; a circle has none.
+std::vector<base::Vec2> corner_points(const Plan& plan);
+
+// What keeps a plan from being a region (a length that is not positive, points on a line, sides that cross), with the
+// place; empty: nothing.
+std::string plan_fault(const Plan& plan);
 
 double area(const Plan& plan);      // m2
 double perimeter(const Plan& plan); // m

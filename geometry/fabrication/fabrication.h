@@ -17,8 +17,11 @@ struct Side {
   bool seam = false;
   std::string mate;         // name of the strip on the other side of a seam
   bool reversed = false;    // runs against the seam's direction: the mating strip sees it the other way round
+  double mate_length = 0;   // of the seam in the mating strip, m: flattening leaves both a little different
   std::vector<Vec2> points; // along the net outline, counterclockwise, both ends included
 };
+
+double length(const Side& side); // m
 
 // A strip as it lies flat, its length (roll direction) along x: the net outline is where welds and clamps hold.
 struct FlatStrip {
@@ -29,7 +32,7 @@ struct FlatStrip {
 struct Allowances {
   double seam = 0;          // beyond the net line of a seam, m (half the weld's width: the net line is its middle)
   double clamp = 0;         // beyond the net line of a clamped edge, m
-  double notch_spacing = 0; // along seams, m
+  double notch_spacing = 0; // largest along seams, m; 0: no notches
 };
 
 struct Notch {
@@ -46,22 +49,32 @@ struct CutStrip {
   Vec2 low, high;                // bounding box of the cut
 };
 
-// The cut outline with its allowances and notches. Notches of a seam stand at the same fractions of its length in both
-// strips, so that they meet when welded. Throws GeometryError with the strip's name and the place where the offset
-// crosses itself.
+// Wedges are cut off square where the mitre would reach farther from the net corner than this times the allowance.
+constexpr double mitre_limit = 2;
+
+// The cut outline with its allowances and notches. At a corner the lines parallel to both sides are prolonged until
+// they meet; where one of them would then cut into the other side's allowance (a blunt corner between a seam and a
+// clamped edge), the outline steps from one to the other. Notches of a seam stand at the same fractions of its length
+// in both strips, so that they meet when welded; they are numbered in the seam's direction. Throws GeometryError with
+// the strip's name and the place where the net outline is open or crosses itself, or the offset crosses itself (loops
+// of the allowance's size, in hollows, are cut off instead).
 CutStrip cut_strip(const FlatStrip& strip, const Allowances& allowances);
 
 // Where a strip lies on the roll: turned by half a turn or not (never mirrored, never across the roll), then moved.
 struct Placement {
   Index strip = 0;
   bool turned = false;
-  Vec2 move; // x along the roll
+  Vec2 move; // x along the roll, y across it from its edge
+
+  Vec2 operator()(const Vec2& point) const { return (turned ? -1 : 1) * point + move; }
 };
 struct Nesting {
   std::vector<Placement> placements;
   double length = 0;         // of roll used, m
   double waste_fraction = 0; // 1 - area of the cuts / (length x full roll width)
 };
+
+double roll_width_for(const std::vector<CutStrip>& strips, double selvedge); // that takes the widest of them, m
 
 // Puts strips on a roll, longest first, side by side where the width allows, with `gap` between them: simple shelves.
 // `width`: of the roll, m; `selvedge`: not used along both its edges, m. Throws GeometryError naming the strips that

@@ -29,12 +29,19 @@ Measure measure(const Plan& plan, const MeshOptions& options) {
     return {{r->length, r->width}, {2, 2}, {"along the length", "along the width"}};
   if (const auto* c = std::get_if<Circle>(&plan))
     return {{c->radius * std::numbers::pi / 2, 0.53 * c->radius}, {1, 1}, {"per quarter of the rim", "in rings"}};
-  const auto& p = std::get<Triangle>(plan).points;
-  const double side = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+  const double side = longest_side(corner_points(plan));
+  if (std::holds_alternative<Polygon>(plan)) return {{side, 0}, {2, 0}, {"along the longest side", ""}};
   return {{side, 0}, {triangles ? 3 : 2, 0}, {"per side", ""}};
 }
 
 } // namespace
+
+double longest_side(std::span<const base::Vec2> ring) {
+  double longest = 0;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    longest = std::max(longest, (ring[(k + 1) % ring.size()] - ring[k]).norm());
+  return longest;
+}
 
 std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options) {
   const Measure of = measure(plan, options);
@@ -70,6 +77,7 @@ std::array<int, 2> divisions_of(const Plan& plan, const MeshOptions& options) {
   const double b = n[1];
   const double cells = std::holds_alternative<Circle>(plan)      ? a * a + 4 * a * b
                        : std::holds_alternative<Rectangle>(plan) ? a * b
+                       : std::holds_alternative<Polygon>(plan)   ? area(plan) * (a / of.length[0]) * (a / of.length[0])
                                                                  : a * a;
   if (cells > most_cells)
     throw base::InputError(fmt::format(

@@ -2,7 +2,6 @@
 #include "geometry/meshing/plan_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -17,26 +16,11 @@ namespace pneuma::geometry::meshing {
 
 namespace {
 
-void check_length(const char* name, double value) {
-  if (!std::isfinite(value) || value <= 0)
-    throw base::GeometryError(fmt::format("plan: the {} must be positive, not {} m", name, value));
-}
-
-void check_plan(const Plan& plan) {
-  if (const auto* rectangle = std::get_if<Rectangle>(&plan)) {
-    check_length("length", rectangle->length);
-    check_length("width", rectangle->width);
-  } else if (const auto* circle = std::get_if<Circle>(&plan)) {
-    check_length("radius", circle->radius);
-  } else {
-    const double around = perimeter(plan);
-    // an equilateral triangle has area / perimeter^2 = 0.048
-    if (!std::isfinite(around) || !(area(plan) > 1e-4 * around * around)) {
-      throw base::GeometryError(fmt::format("plan: the three points of the triangle lie on a line, or nearly so (area "
-                                            "{:.3g} m2 with a perimeter of {:.3g} m)",
-                                            area(plan), around));
-    }
-  }
+// The same region, its points from the first one the other way round.
+Plan turned_round(Plan plan) {
+  if (auto* triangle = std::get_if<Triangle>(&plan)) std::swap(triangle->points[1], triangle->points[2]);
+  if (auto* polygon = std::get_if<Polygon>(&plan)) std::reverse(polygon->points.begin() + 1, polygon->points.end());
+  return plan;
 }
 
 // the middle of a side of the rim, on the curve of the plan
@@ -107,18 +91,16 @@ Mesh complete(const Plan& plan, const CornerMesh& corner_mesh, ElementType eleme
 } // namespace
 
 Mesh mesh_plan(const Plan& plan, const MeshOptions& options) {
-  check_plan(plan);
-  // a clockwise triangle is meshed from its first point the other way round: its last edge comes first
-  Plan counterclockwise = plan;
-  bool turned = false;
-  if (auto* triangle = std::get_if<Triangle>(&counterclockwise)) {
-    auto& p = triangle->points;
-    turned = cross(p[1] - p[0], p[2] - p[0]) < 0;
-    if (turned) std::swap(p[1], p[2]);
+  if (const std::string fault = plan_fault(plan); !fault.empty()) throw base::GeometryError("plan: " + fault);
+  if (std::holds_alternative<Polygon>(plan) && options.pattern == Pattern::structured) {
+    throw base::InputError("mesh: a polygon has no structured pattern; allowed: unstructured");
   }
+  // a clockwise outline is meshed counterclockwise from its first point: its last edge comes first
+  const bool turned = signed_area(corner_points(plan)) < 0;
+  const Plan counterclockwise = turned ? turned_round(plan) : plan;
   CornerMesh corner_mesh = options.pattern == Pattern::structured ? structured_mesh(counterclockwise, options)
                                                                   : unstructured_mesh(counterclockwise, options);
-  if (turned) std::swap(corner_mesh.edges[0], corner_mesh.edges[2]);
+  if (turned) std::reverse(corner_mesh.edges.begin(), corner_mesh.edges.end());
   Mesh mesh = complete(plan, corner_mesh, options.element);
   for (const MeshFault& fault : check_mesh(mesh)) {
     if (fault.severity == Severity::error)

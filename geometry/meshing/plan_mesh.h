@@ -16,11 +16,11 @@ enum class Pattern : std::uint8_t { structured, unstructured };
 struct MeshOptions {
   ElementType element = ElementType::T6;
   // exactly one of the two: wanted element size (m), or divisions along (length, width) of a rectangle, (per side, -)
-  // of a triangle, (per quarter rim, radial rings outside the core square) of a circle; an unstructured mesh takes the
-  // divisions of the rim only
+  // of a triangle, (along the longest side, -) of a polygon, whose other sides have as many in proportion, (per quarter
+  // rim, radial rings outside the core square) of a circle; an unstructured mesh takes the divisions of the rim only
   std::optional<double> size;
   std::optional<std::array<int, 2>> divisions;
-  Pattern pattern = Pattern::structured;
+  Pattern pattern = Pattern::structured; // a polygon has the unstructured one only
 };
 
 // Meshes the plan once: one block named `plan`, counterclockwise seen from +z, nodes at z = 0, one edge per name of

@@ -57,19 +57,21 @@ Rim rim_of(const Plan& plan, const MeshOptions& options) {
                                        n % 2 != 0 ? n : m));
   }
   if (const auto* circle = std::get_if<Circle>(&plan)) return circle_rim(circle->radius, 4 * n);
-  if (const auto* rectangle = std::get_if<Rectangle>(&plan)) {
-    const double x = rectangle->length / 2;
-    const double y = rectangle->width / 2;
-    return polygon_rim({{-x, -y}, {x, -y}, {x, y}, {-x, y}}, {n, m, n, m});
+  const std::vector<Vec2> corners = corner_points(plan);
+  if (std::holds_alternative<Rectangle>(plan)) return polygon_rim(corners, {n, m, n, m});
+  std::vector<int> divisions(corners.size(), n);
+  const double longest = longest_side(corners);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const double side = (corners[(k + 1) % corners.size()] - corners[k]).norm();
+    if (options.size) {
+      divisions[k] = std::max(static_cast<int>(std::ceil(side / *options.size * (1 - 1e-12))), 2);
+      if (quadrilaterals) divisions[k] += divisions[k] % 2;
+    } else if (std::holds_alternative<Polygon>(plan)) {
+      const int unit = quadrilaterals ? 2 : 1;
+      divisions[k] = std::max(unit * static_cast<int>(std::lround(n * side / (longest * unit))), 2);
+    }
   }
-  const auto& p = std::get<Triangle>(plan).points;
-  std::vector<int> divisions(3, n);
-  for (std::size_t k = 0; k < 3 && options.size; ++k) {
-    const double wanted = std::ceil((p[(k + 1) % 3] - p[k]).norm() / *options.size * (1 - 1e-12));
-    divisions[k] = std::max(static_cast<int>(wanted), 2);
-    if (quadrilaterals) divisions[k] += divisions[k] % 2;
-  }
-  return polygon_rim({p[0], p[1], p[2]}, divisions);
+  return polygon_rim(corners, divisions);
 }
 
 } // namespace

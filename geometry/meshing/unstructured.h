@@ -6,7 +6,7 @@
 
 namespace pneuma::geometry::meshing {
 
-// Free pattern inside an evenly divided rim. The points of a triangular plan run counterclockwise.
+// Free pattern inside an evenly divided rim. The points of a triangle or polygon run counterclockwise.
 CornerMesh unstructured_mesh(const Plan& plan, const MeshOptions& options);
 
 } // namespace pneuma::geometry::meshing

@@ -29,6 +29,26 @@ std::optional<double> number_at(const json& summary, std::initializer_list<const
   return at->is_number() ? std::optional<double>(at->get<double>()) : std::nullopt;
 }
 
+// Of a foil cut into strips; what the summary does not hold is left out.
+std::vector<std::string> pattern_values(const json& pattern) {
+  std::vector<std::string> values;
+  const auto strips = pattern.is_object() ? pattern.find("strips") : pattern.end();
+  if (strips != pattern.end() && strips->is_array()) {
+    values.push_back(fmt::format("{} strips", strips->size()));
+    std::optional<double> largest;
+    for (const json& strip : *strips) {
+      const auto mismatch = number_at(strip, {"seam_mismatch_max"});
+      if (mismatch) largest = std::max(largest.value_or(*mismatch), *mismatch);
+    }
+    if (largest) values.push_back(fmt::format("seams differ by {:.3g} mm at most", *largest * 1e3));
+  }
+  if (const auto waste = number_at(pattern, {"waste_fraction"})) {
+    values.push_back(fmt::format("waste {:.3g} %", *waste * 100));
+  }
+  if (const auto weld = number_at(pattern, {"weld_length"})) values.push_back(fmt::format("welds {:.4g} m", *weld));
+  return values;
+}
+
 void say_results(const json& summary) {
   const auto line = [](const std::string& name, const std::vector<std::string>& values) {
     if (!values.empty()) base::say(fmt::format("    {}: {}", name, fmt::join(values, ", ")));
@@ -54,6 +74,9 @@ void say_results(const json& summary) {
       }
       line("foil " + name, values);
     }
+  }
+  if (const auto patterns = summary.find("patterns"); patterns != summary.end() && patterns->is_object()) {
+    for (const auto& [name, pattern] : patterns->items()) line("pattern " + name, pattern_values(pattern));
   }
 }
 

@@ -28,10 +28,14 @@ Json group_of(const Option& option, const std::string& tag) {
   }
   json["properties"] = std::move(properties);
   if (!required.empty()) json["required"] = std::move(required);
-  for (const auto& keys : option.alternatives) {
+  for (const KeySet& set : option.alternatives) {
+    if (set.least == 0) {
+      json["not"] = {{"required", set.keys}};
+      continue;
+    }
     Json one = Json::array();
-    for (const std::string& key : keys) one.push_back({{"required", {key}}});
-    json["oneOf"] = std::move(one);
+    for (const std::string& key : set.keys) one.push_back({{"required", {key}}});
+    json[set.most == 1 ? "oneOf" : "anyOf"] = std::move(one);
   }
   return json;
 }

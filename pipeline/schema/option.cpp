@@ -67,7 +67,18 @@ Option Option::items(std::size_t least, std::size_t most) const {
 }
 Option Option::exactly_one(std::vector<std::string> keys) const {
   Option copy = *this;
-  copy.alternatives.push_back(std::move(keys));
+  copy.alternatives.push_back({std::move(keys)});
+  return copy;
+}
+Option Option::at_least_one(std::vector<std::string> keys) const {
+  Option copy = *this;
+  const std::size_t most = keys.size();
+  copy.alternatives.push_back({std::move(keys), 1, most});
+  return copy;
+}
+Option Option::not_both(std::string first, std::string second) const {
+  Option copy = *this;
+  copy.alternatives.push_back({{std::move(first), std::move(second)}, 0, 1});
   return copy;
 }
 
@@ -236,6 +247,12 @@ std::string written(const Node& node) {
   return {};
 }
 
+// "exactly one of: a, b"
+std::string wanted(const KeySet& set) {
+  const char* count = set.least == 0 ? "at most one" : set.most == 1 ? "exactly one" : "at least one";
+  return fmt::format("{} of: {}", count, joined(set.keys));
+}
+
 // What a value is called in messages: the last key of its path, with the one before for list items.
 std::string title(const std::string& path) {
   if (path.empty()) return "the file";
@@ -397,19 +414,33 @@ private:
     }
   }
 
+  // Of two kinds of scalars a choice comes first: what begins like a number is left to the other.
   Value read_either(const Option& option, const Node& node, const std::string& path) {
+    const auto scalars = std::count_if(option.members.begin(), option.members.end(),
+                                       [](const Option& kind) { return kind_of(kind) == NodeKind::scalar; });
+    std::vector<std::string> words;
     for (const Option& kind : option.members) {
       if (kind_of(kind) != node.kind) continue;
-      if (kind.not_yet.empty()) return read(kind, node, path);
-      not_yet(node.mark, fmt::format("{} as {}", title(path), written(node)), kind.not_yet);
-      Value value;
-      value.mark = node.mark;
-      value.read_as = &kind;
-      return value;
+      if (!kind.not_yet.empty()) {
+        not_yet(node.mark, fmt::format("{} as {}", title(path), written(node)), kind.not_yet);
+        Value value;
+        value.mark = node.mark;
+        value.read_as = &kind;
+        return value;
+      }
+      if (kind.type == Type::choice && scalars > 1) {
+        words = names_of(kind.members);
+        if (std::find(words.begin(), words.end(), node.text) == words.end()) {
+          if (node.text.find_first_of("+-.0123456789") == 0) continue;
+          break;
+        }
+      }
+      return read(kind, node, path);
     }
     Value value;
     value.mark = node.mark;
-    fail(node.mark, fmt::format("{} must be {}, not {}", title(path), expected(option), written(node)));
+    fail(node.mark, fmt::format("{} must be {}, not {}{}", title(path), expected(option), written(node),
+                                suggestion(node.text, words)));
     return value;
   }
 
@@ -460,11 +491,11 @@ private:
            fmt::format("{} lacks the key `{}`: {} ({})", title(path), member.name, member.text, expected(member)));
       value.valid = false;
     }
-    for (const std::vector<std::string>& keys : option.alternatives) {
-      const auto present =
-          std::count_if(keys.begin(), keys.end(), [&](const std::string& key) { return value.find(key) != nullptr; });
-      if (present == 1) continue;
-      fail(node.mark, fmt::format("{} needs exactly one of: {}; it has {}", title(path), joined(keys),
+    for (const KeySet& set : option.alternatives) {
+      const auto is_present = [&](const std::string& key) { return value.find(key) != nullptr; };
+      const auto present = static_cast<std::size_t>(std::count_if(set.keys.begin(), set.keys.end(), is_present));
+      if (present >= set.least && present <= set.most) continue;
+      fail(node.mark, fmt::format("{} needs {}; it has {}", title(path), wanted(set),
                                   present == 0 ? "none" : fmt::format("{}", present)));
       value.valid = false;
     }
@@ -531,9 +562,7 @@ void describe(const Option& option, const std::string& indent, std::string& out)
   if (!option.default_value.empty())
     out += fmt::format(" [{}{}]", option.tag.empty() ? "" : option.tag + ": ", option.default_value);
   out += '\n';
-  for (const std::vector<std::string>& keys : option.alternatives) {
-    out += fmt::format("{}  (exactly one of: {})\n", indent, joined(keys));
-  }
+  for (const KeySet& set : option.alternatives) out += fmt::format("{}  ({})\n", indent, wanted(set));
   if (option.type == Type::choice) return;
   for (const Option& member : option.members) {
     const std::string lead = option.type == Type::variant ? option.tag + " " : "";

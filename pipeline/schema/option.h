@@ -23,7 +23,7 @@ enum class Type : std::uint8_t {
   list,     // of the one member
   group,    // a map with the members as keys
   table,    // a map from free names to the one member
-  either,   // the member that fits what is written: a scalar, a list or a map
+  either,   // the member that fits what is written: a scalar (a choice's word before a number), a list or a map
   variant,  // a group chosen among the members by the value of its key `tag`
 };
 
@@ -33,6 +33,12 @@ struct Range {
   std::string words;        // as a user would write it: "positive", "from -1 to 0.5"
   bool includes_min = true; // in SI
   bool includes_max = true;
+};
+
+// How many keys of a set stand in a group.
+struct KeySet {
+  std::vector<std::string> keys;
+  std::size_t least = 1, most = 1;
 };
 
 // One option, declared once: parsing, checks, defaults, documentation and the JSON schema come from it.
@@ -51,7 +57,7 @@ struct Option {
   std::optional<Range> usually; // outside is a warning
   std::size_t min_items = 0;
   std::size_t max_items = std::numeric_limits<std::size_t>::max();
-  std::vector<std::vector<std::string>> alternatives; // of a group: exactly one key of each set stands there
+  std::vector<KeySet> alternatives; // of a group
 
   // The table reads as sentences: quantity("thickness", "m", "...").required().positive()
   Option required() const;
@@ -64,6 +70,8 @@ struct Option {
   Option usual(double min, double max, std::string words) const;
   Option items(std::size_t least, std::size_t most) const;
   Option exactly_one(std::vector<std::string> keys) const;
+  Option at_least_one(std::vector<std::string> keys) const;
+  Option not_both(std::string first, std::string second) const;
 };
 
 Option text(std::string name, std::string what);

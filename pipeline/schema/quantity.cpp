@@ -115,8 +115,9 @@ Quantity parse_quantity(std::string_view text, const std::string& unit) {
   if (name == "C") return wrong("is in coulomb: the unit of temperature is degC or K");
   if (name.front() == '/') name = fmt::format("1{}", name);
   const bool reciprocal = name.size() > 2 && name.starts_with("1/");
+  const bool is_one = unit == "1" && name == "1"; // how a ratio is written to the last bit
   const bool digit_first = (name.front() >= '0' && name.front() <= '9') || name.front() == '.';
-  if (digit_first && !reciprocal) return wrong("has a unit that begins with a digit");
+  if (digit_first && !reciprocal && !is_one) return wrong("has a unit that begins with a digit");
   if (name.find('@') != std::string::npos || name.find(" from ") != std::string::npos) return wrong("has an odd unit");
 
   const Unit read = own(ut_parse(units(), name.c_str(), UT_UTF8));

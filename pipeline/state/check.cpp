@@ -50,6 +50,37 @@ std::string fault_in_mesh(const State& state) {
   return {};
 }
 
+std::string fault_in_strips(const State& state, const Block& block, const Foil& foil) {
+  const auto strips = static_cast<Index>(foil.strips.size());
+  const auto unknown = [&](Index strip) { return strip < 0 || strip >= strips; };
+  if (block.kind == BlockKind::base && (strips > 0 || !foil.strip_of_element.empty() || !foil.seams.empty())) {
+    return fmt::format("the base {} has strips", block.name);
+  }
+  if (std::set(foil.strips.begin(), foil.strips.end()).size() != foil.strips.size()) {
+    return fmt::format("foil {}: two strips have the same name", block.name);
+  }
+  const std::size_t elements = strips > 0 ? static_cast<std::size_t>(state.mesh.element_count(block)) : 0;
+  if (foil.strip_of_element.size() != elements) {
+    return fmt::format("foil {}: strip_of_element has {} values instead of {}", block.name,
+                       foil.strip_of_element.size(), elements);
+  }
+  const auto found = std::find_if(foil.strip_of_element.begin(), foil.strip_of_element.end(), unknown);
+  if (found != foil.strip_of_element.end()) {
+    return fmt::format("foil {}: an element is in strip {}, but there are {}", block.name, *found, strips);
+  }
+  for (const Seam& seam : foil.seams) {
+    const std::string whose = fmt::format("seam {} of foil {}", seam.name, block.name);
+    for (const Index side : {seam.left, seam.right}) {
+      if (unknown(side)) return fmt::format("{} names strip {}, but there are {}", whose, side, strips);
+    }
+    if (seam.left == seam.right) return fmt::format("{} joins strip {} with itself", whose, seam.left);
+    if (seam.nodes.size() < 2) return fmt::format("{} has {} nodes; a line has 2 at least", whose, seam.nodes.size());
+    std::string fault = fault_in_numbers(seam.nodes, state.mesh.nodes.size(), whose);
+    if (!fault.empty()) return fault;
+  }
+  return {};
+}
+
 std::string fault_in_foils(const State& state) {
   const geometry::Mesh& mesh = state.mesh;
   if (state.foils.size() != mesh.blocks.size()) {
@@ -67,7 +98,7 @@ std::string fault_in_foils(const State& state) {
     for (const std::string& fault :
          {wrong("reference", foil.reference, 3 * block.connectivity.size()),
           wrong("predeformation", foil.predeformation, 3 * points), wrong("prestress", foil.prestress, 3 * points),
-          wrong("history", foil.history, foil.history_names.size() * points)}) {
+          wrong("history", foil.history, foil.history_names.size() * points), fault_in_strips(state, block, foil)}) {
       if (!fault.empty()) return fault;
     }
   }

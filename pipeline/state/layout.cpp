@@ -164,34 +164,67 @@ void read_blocks(const Group& group, geometry::Mesh& mesh, const std::vector<Ind
   require(next == connectivity.end(), "/pneuma/blocks/elements: do not sum to the cells of the grid");
 }
 
-void write_edges(const Group& group, const geometry::Mesh& mesh) {
-  std::vector<std::uint8_t> closed;
+// The nodes of edges or seams, one list after the other, and how many each has.
+template <class Line>
+void write_node_lists(const Group& group, const std::vector<Line>& lines) {
   std::vector<std::int64_t> counts;
   std::vector<Index> nodes;
-  for (const geometry::Edge& edge : mesh.edges) {
-    closed.push_back(edge.closed ? 1 : 0);
-    counts.push_back(static_cast<std::int64_t>(edge.nodes.size()));
-    nodes.insert(nodes.end(), edge.nodes.begin(), edge.nodes.end());
+  for (const Line& line : lines) {
+    counts.push_back(static_cast<std::int64_t>(line.nodes.size()));
+    nodes.insert(nodes.end(), line.nodes.begin(), line.nodes.end());
   }
-  group.write("name", column(mesh.edges, &geometry::Edge::name));
-  write_list(group, "closed", closed, "1");
   write_list(group, "count", counts, "1");
   write_list(group, "nodes", nodes, "1");
+}
+
+template <class Line>
+void read_node_lists(const Group& group, std::vector<Line>& lines, const std::string& place) {
+  const std::vector<std::int64_t> counts = group.read<std::int64_t>("count", {lines.size()});
+  const std::vector<Index> nodes = group.read<Index>("nodes", {any});
+  const std::string fault = place + "/count: does not sum to the nodes";
+  auto next = nodes.begin();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    require(counts[i] >= 0 && counts[i] <= nodes.end() - next, fault);
+    lines[i].nodes.assign(next, next + counts[i]);
+    next += counts[i];
+  }
+  require(next == nodes.end(), fault);
+}
+
+void write_edges(const Group& group, const geometry::Mesh& mesh) {
+  std::vector<std::uint8_t> closed;
+  closed.reserve(mesh.edges.size());
+  for (const geometry::Edge& edge : mesh.edges) closed.push_back(edge.closed ? 1 : 0);
+  group.write("name", column(mesh.edges, &geometry::Edge::name));
+  write_list(group, "closed", closed, "1");
+  write_node_lists(group, mesh.edges);
 }
 
 void read_edges(const Group& group, geometry::Mesh& mesh) {
   const std::vector<std::string> names = group.read_texts("name");
   const std::vector<std::uint8_t> closed = group.read<std::uint8_t>("closed", {names.size()});
-  const std::vector<std::int64_t> counts = group.read<std::int64_t>("count", {names.size()});
-  const std::vector<Index> nodes = group.read<Index>("nodes", {any});
-  auto next = nodes.begin();
   for (std::size_t i = 0; i < names.size(); ++i) {
     require(closed[i] <= 1, "/pneuma/edges/closed: neither 0 nor 1");
-    require(counts[i] >= 0 && counts[i] <= nodes.end() - next, "/pneuma/edges/count: does not sum to the nodes");
-    mesh.edges.push_back({names[i], closed[i] == 1, {next, next + counts[i]}});
-    next += counts[i];
+    mesh.edges.push_back({names[i], closed[i] == 1, {}});
   }
-  require(next == nodes.end(), "/pneuma/edges/count: does not sum to the nodes");
+  read_node_lists(group, mesh.edges, "/pneuma/edges");
+}
+
+void write_seams(const Group& group, const std::vector<Seam>& seams) {
+  group.write("name", column(seams, &Seam::name));
+  write_list(group, "left", column(seams, &Seam::left), "1");
+  write_list(group, "right", column(seams, &Seam::right), "1");
+  write_node_lists(group, seams);
+}
+
+std::vector<Seam> read_seams(const Group& group, const std::string& place) {
+  const std::vector<std::string> names = group.read_texts("name");
+  const std::vector<Index> left = group.read<Index>("left", {names.size()});
+  const std::vector<Index> right = group.read<Index>("right", {names.size()});
+  std::vector<Seam> seams;
+  for (std::size_t i = 0; i < names.size(); ++i) seams.push_back({names[i], left[i], right[i], {}});
+  read_node_lists(group, seams, place);
+  return seams;
 }
 
 std::uint64_t points_per_element(const State& state) {
@@ -214,9 +247,13 @@ void write_foil(const Group& group, const State& state, const Foil& foil) {
   per_element("prestress", foil.prestress, points, 3, "N/m");
   group.write("history_names", foil.history_names);
   per_element("history", foil.history, points, foil.history_names.size(), "SI"); // each component has its own
+  group.write("strips", foil.strips);
+  write_list(group, "strip_of_element", foil.strip_of_element, "1");
+  write_seams(group.create("seams"), foil.seams);
 }
 
-Foil read_foil(const Group& group, const State& state) {
+Foil read_foil(const Group& foils, const std::string& number, const State& state) {
+  const Group group = foils.open(number);
   const auto corners = static_cast<std::uint64_t>(geometry::nodes_per_element(state.mesh.element));
   const std::uint64_t points = points_per_element(state);
   Foil foil;
@@ -228,6 +265,9 @@ Foil read_foil(const Group& group, const State& state) {
   foil.prestress = group.read<double>("prestress", {any, points, 3});
   foil.history_names = group.read_texts("history_names");
   foil.history = group.read<double>("history", {any, points, foil.history_names.size()});
+  foil.strips = group.read_texts("strips");
+  foil.strip_of_element = group.read<Index>("strip_of_element", {any});
+  foil.seams = read_seams(group.open("seams"), "/pneuma/foils/" + number + "/seams");
   return foil;
 }
 
@@ -411,7 +451,7 @@ State from_bytes(const std::string& bytes) {
   state.fixed = pneuma.read<std::uint8_t>("fixed", {state.mesh.nodes.size(), 3});
   const Group foils = pneuma.open("foils");
   for (std::size_t i = 0; i < state.mesh.blocks.size(); ++i) {
-    state.foils.push_back(read_foil(foils.open(numbered(i)), state));
+    state.foils.push_back(read_foil(foils, numbered(i), state));
   }
   state.chambers = read_chambers(pneuma.open("chambers"));
   state.fields = read_fields(pneuma.open("fields"), vtk, state);

@@ -15,7 +15,7 @@ using base::Index;
 using base::Vec3;
 
 // Version of the layout below and of the file; a file of another version is refused with a message.
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 // Where a state comes from. Text only: nothing here takes part in computing.
 struct Provenance {

@@ -16,6 +16,8 @@ namespace pneuma::pipeline::workflow {
 
 using schema::Value;
 
+inline constexpr const char* all_foils = "all"; // key that stands for every foil
+
 base::Vec2 vec2_of(const Value& list);
 Vec3 vec3_of(const Value& list);
 
@@ -32,6 +34,8 @@ public:
 private:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
   void warn(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), false}); }
+  // A key that a user gave and that cannot stand where it does: why.
+  void refuse(const Value& stage, const std::string& key, const std::string& reason);
 
   // builder_cushion.cpp
   void read_site(const Value& site);
@@ -54,6 +58,7 @@ private:
   void fail_unknown_foil(const Mark& mark, const std::string& name);
   void read_chambers(const Value& chambers);
   void read_walls(const Value& between, ChamberSettings& chamber, std::map<std::size_t, std::string>& gaps);
+  // Of a value and of all that lies in it.
   void copy_origin(const std::string& from, const std::string& to);
 
   // builder_stages.cpp
@@ -82,6 +87,15 @@ private:
   Region region_of(const Value& region);
   void check_factors(const Value* factors, const std::vector<Load>& loads);
   void check_gravity();
+
+  // builder_pattern.cpp
+  PatternSettings pattern_of(const Value& stage, const std::string& path);
+  Roll roll_of(const Value& roll);
+  Compensation compensation_of(const Value& stage);
+  std::vector<std::string> foils_to_cut(const Value& foils);
+  // `foils`: those to be cut; empty: not stated
+  std::map<std::string, PlanCurves> curves_of(const Value& table, const std::string& path,
+                                              const std::vector<std::string>& foils);
 
   Workflow workflow_;
   bool is_stage_file_ = false;

@@ -24,14 +24,13 @@ using schema::text_of;
 namespace {
 
 constexpr const char* base_wall = "base";
-constexpr const char* all_foils = "all";
 
 std::string folder_relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
   if (file.is_absolute() == folder.is_absolute()) {
     const auto relative = file.lexically_normal().lexically_relative((folder / "").lexically_normal());
     if (!relative.empty()) return relative.generic_string();
   }
-  const auto base = std::filesystem::absolute(folder).lexically_normal();
+  const auto base = std::filesystem::absolute(folder.empty() ? std::filesystem::path(".") : folder).lexically_normal();
   return std::filesystem::absolute(file).lexically_normal().lexically_relative(base).generic_string();
 }
 
@@ -193,16 +192,20 @@ void Builder::read_plan(const Value& plan) {
       for (int i = 0; i < 6; ++i) workflow_.origins[fmt::format("cushion.plan.points.{}.{}", i / 2, i % 2)] = mark;
     }
   } else if (const Value* points = plan["points"]) {
-    geometry::Triangle triangle;
-    for (std::size_t i = 0; i < 3; ++i) triangle.points[i] = vec2_of(points->items[i]);
-    out = triangle;
-    const double longest =
-        std::max({(triangle.points[1] - triangle.points[0]).norm(), (triangle.points[2] - triangle.points[1]).norm(),
-                  (triangle.points[0] - triangle.points[2]).norm()});
-    if (!(geometry::area(out) > 1e-6 * longest * longest)) {
-      fail(points->mark, "the three `points` lie on a line: a triangle needs an area");
+    geometry::Polygon polygon;
+    for (const Value& corner : points->items) polygon.points.push_back(vec2_of(corner));
+    if (plan.text == "polygon") {
+      out = polygon;
+    } else {
+      const auto& p = polygon.points;
+      out = geometry::Triangle{{p[0], p[1], p[2]}};
+    }
+    if (const std::string fault = geometry::plan_fault(out); !fault.empty()) {
+      fail(points->mark, fault);
       plan_known_ = false;
     }
+  } else {
+    plan_known_ = false; // its points are wrong
   }
 }
 
@@ -309,10 +312,14 @@ void Builder::read_walls(const Value& between, ChamberSettings& chamber, std::ma
 }
 
 void Builder::copy_origin(const std::string& from, const std::string& to) {
-  const auto known = workflow_.origins.find(from);
-  if (known == workflow_.origins.end()) return;
-  const Mark mark = known->second;
-  workflow_.origins[to] = mark;
+  std::map<std::string, Mark> copies;
+  if (const auto known = workflow_.origins.find(from); known != workflow_.origins.end()) copies[to] = known->second;
+  const std::string inside = from + ".";
+  for (auto at = workflow_.origins.lower_bound(inside); at != workflow_.origins.end() && at->first.starts_with(inside);
+       ++at) {
+    copies[to + "." + at->first.substr(inside.size())] = at->second;
+  }
+  for (const auto& [path, mark] : copies) workflow_.origins[path] = mark;
 }
 
 } // namespace pneuma::pipeline::workflow

@@ -21,11 +21,10 @@ using schema::optional_number;
 using schema::suggestion;
 using schema::text_of;
 
-namespace {
-
-constexpr const char* all_foils = "all";
-
-} // namespace
+void Builder::refuse(const Value& stage, const std::string& key, const std::string& reason) {
+  const Value* value = stage.find(key);
+  if (value != nullptr && value->given) fail(value->key, fmt::format("`{}` {}; leave it out", key, reason));
+}
 
 void Builder::add_mesh(const Value& mesh) {
   MeshSettings out;
@@ -35,6 +34,7 @@ void Builder::add_mesh(const Value& mesh) {
   const auto found = std::find(names.begin(), names.end(), element);
   if (found != names.end()) out.element = static_cast<geometry::ElementType>(found - names.begin());
   out.size = optional_number(mesh, "size");
+  const bool is_polygon = plan_known_ && std::holds_alternative<geometry::Polygon>(workflow_.cushion.plan);
   if (const Value* divisions = mesh["divisions"]) {
     const bool is_pair = !divisions->items.empty();
     const double first = is_pair ? divisions->items[0].number : divisions->number;
@@ -42,12 +42,17 @@ void Builder::add_mesh(const Value& mesh) {
     out.divisions = {static_cast<int>(first), static_cast<int>(second)};
     if (is_pair && plan_known_ && std::holds_alternative<geometry::Triangle>(workflow_.cushion.plan)) {
       fail(divisions->mark, "a triangle has one number of `divisions`, along each side");
+    } else if (is_pair && is_polygon) {
+      fail(divisions->mark, "a polygon has one number of `divisions`, along its longest side");
     }
     for (const char* end : {"0", "1"}) {
       copy_origin("mesh.divisions", std::string("mesh.divisions.") + end);
     }
   }
   const std::string pattern = text_of(mesh, "pattern");
+  if (pattern == "structured" && is_polygon) {
+    fail(mesh["pattern"]->mark, "a polygon has no structured pattern; allowed: unstructured");
+  }
   if (!pattern.empty()) {
     out.pattern = pattern == "structured" ? MeshPattern::structured : MeshPattern::unstructured;
   }
@@ -165,6 +170,8 @@ void Builder::add_stage(const std::string& id, const Value& stage, const std::ma
   const std::string path = "stages." + id;
   if (out.run == "formfind") {
     out.settings = formfind_of(stage, path);
+  } else if (out.run == "pattern") {
+    out.settings = pattern_of(stage, path);
   } else if (out.run == "inflate") {
     out.settings = inflate_of(stage, path, out.from_run);
   } else if (out.run == "wind") {
@@ -187,8 +194,10 @@ void Builder::check_from(const std::string& id, const Value& stage, const Value&
                                        schema::joined(ids)));
   }
   if (in_cycle(id, from, known)) return;
-  static const std::map<std::string, std::vector<std::string>> starts = {
-      {"formfind", {"mesh"}}, {"inflate", {"mesh", "formfind"}}, {"wind", {"inflate"}}};
+  static const std::map<std::string, std::vector<std::string>> starts = {{"formfind", {"mesh"}},
+                                                                         {"pattern", {"formfind"}},
+                                                                         {"inflate", {"mesh", "formfind", "pattern"}},
+                                                                         {"wind", {"inflate"}}};
   const auto allowed = starts.find(out.run);
   if (!stage.valid || allowed == starts.end() || out.from_run.empty()) return;
   if (std::find(allowed->second.begin(), allowed->second.end(), out.from_run) != allowed->second.end()) return;
@@ -251,6 +260,10 @@ InflateSettings Builder::inflate_of(const Value& stage, const std::string& path,
     }
     if (prestress != nullptr) {
       fail(prestress->key, "`prestress` is for a start from mesh; from a formfind stage use `reference: prestressed`");
+    }
+  } else if (from_run == "pattern") {
+    for (const char* key : {"reference", "prestress"}) {
+      refuse(stage, key, "cannot stand beside a start from a pattern stage: the flat strips are the reference");
     }
   } else if (from_run == "mesh" && reference != nullptr) {
     fail(reference->key, "`reference` is for a start from a formfind stage; from mesh the flat plan is the reference");

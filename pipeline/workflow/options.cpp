@@ -75,7 +75,7 @@ Option site() {
 }
 
 Option plan() {
-  const char* shapes = "rectangle, circle and triangle are available";
+  const char* shapes = "rectangle, circle, triangle and polygon are available";
   return variant("plan", "shape",
                  {group("rectangle", {length("length", "along x").required(), length("width", "along y").required()},
                         "edges south, east, north, west"),
@@ -85,9 +85,14 @@ Option plan() {
                          list("points", point("corner", "a corner"), "the three corners").items(3, 3)},
                         "edges e1, e2, e3")
                       .exactly_one({"side", "points"}),
+                  group("polygon",
+                        {list("points", point("corner", "a corner"), "corners in order, either way round")
+                             .items(3, 100000)
+                             .required()},
+                        "edges e1 (from the first point to the second), e2, ...; re-entrant corners are allowed"),
                   group("regular_polygon", {}, "").unavailable(shapes), group("outline", {}, "").unavailable(shapes),
                   group("file", {}, "").unavailable(shapes)},
-                 "the clamped outline, centred on the origin in z = 0");
+                 "the clamped outline in z = 0; rectangle and circle are centred on the origin");
 }
 
 Option cushion() {
@@ -194,6 +199,76 @@ Option formfind() {
       .exactly_one({"prestress", "stress", "sag", "volume"});
 }
 
+Option ratio(const std::string& name, const std::string& what) {
+  return quantity(name, "1", what)
+      .within({0, 0.5, "at least 0 % and below 50 %", true, false})
+      .usual(0, 0.02, "usually up to 2 %");
+}
+
+Option pattern() {
+  const Option roll = group(
+      "roll",
+      {quantity("width", "m", "of the film as bought").required().positive().usual(0.5, 3, "rolls are 0.5 to 3 m wide"),
+       quantity("weld", "m", "width of the overlap")
+           .required()
+           .at_least(0, "at least 0 m")
+           .usual(0.005, 0.03, "usually 5 to 30 mm"),
+       quantity("selvedge", "m", "not used along both edges").required().at_least(0, "at least 0 m")},
+      "the film: every strip must fit on it; alone it gives the fewest strips that fit");
+  const Option curve = list("curve", point("point", "a point"), "points in plan from rim to rim").items(2, 100000);
+  const Option compensation =
+      either("compensation",
+             {choice("kind",
+                     {value("none", "the strips are as large as the form"),
+                      value("elastic", "by the strain of the form's prestress")},
+                     "what decides it"),
+              group("given", {ratio("warp", "along the roll").required(), ratio("weft", "across the roll").required()},
+                    "flat length = (1 - value) x length on the form")},
+             "how much smaller the strips are cut than the form")
+          .otherwise("none");
+  const Option allowance = group("allowance",
+                                 {quantity("clamp", "m", "of film beyond the clamped edge")
+                                      .at_least(0, "at least 0 m")
+                                      .usual(0, 0.5, "usually up to 0.5 m")
+                                      .otherwise("30 mm"),
+                                  quantity("notches", "m", "distance of the marks along the seams")
+                                      .positive()
+                                      .usual(0.02, 10, "usually 2 cm to 10 m")
+                                      .otherwise("0.5 m")},
+                                 "what is added to the net strips")
+                               .otherwise("{}");
+  return group(
+             "pattern",
+             start() +
+                 Options{
+                     integer("strips_per_foil", "number of strips")
+                         .at_least(2, "at least 2")
+                         .usual(2, 50, "usually 2 to 50"),
+                     roll, table("curves", list("FOIL", curve, "of a foil or `all`").items(1, 10000), "the seams"),
+                     choice("lines", {value("geodesic", "shortest on the form"), value("straight", "straight in plan")},
+                            "the seams' kind")
+                         .otherwise("geodesic"),
+                     either("direction",
+                            {choice("search", {value("auto", "the best one is searched")}, "not given"),
+                             quantity("angle", "rad", "from x")},
+                            "of the strips' length")
+                         .otherwise("auto"),
+                     choice("chosen_by",
+                            {value("distortion", "least stretched when flattened"), value("waste", "least film")},
+                            "what the best direction is")
+                         .otherwise("distortion"),
+                     compensation, ratio("creep", "beside the elastic strain").otherwise("0 %"),
+                     quantity("decompensation", "m", "width along clamped edges where the compensation fades in")
+                         .at_least(0, "at least 0 m")
+                         .usual(0, 2, "usually up to 2 m")
+                         .otherwise("0 m"),
+                     list("foils", word("foil", "a foil"), "to be cut; without it all that are not flat").items(1, 16),
+                     allowance, solver_options()},
+             "cuts a found form into flat strips")
+      .at_least_one({"strips_per_foil", "roll", "curves"})
+      .not_both("strips_per_foil", "curves");
+}
+
 Option inflate() {
   return group("inflate",
                start() + Options{pressures("reached with regulated air").required(),
@@ -261,8 +336,7 @@ Option wind() {
 }
 
 Option stages(bool in_stage_file) {
-  const char* kinds = "formfind, inflate and wind are available";
-  Options runs = {formfind(), inflate(), wind(), group("pattern", {}, "").unavailable(kinds)};
+  Options runs = {formfind(), pattern(), inflate(), wind()};
   if (in_stage_file) {
     for (Option& run : runs) run.members.push_back(word("from_run", "kind of the stage it starts from").required());
   }

@@ -124,12 +124,14 @@ struct Compensation {
   double creep = 0;          // beside the elastic strain, in both directions
 };
 
+using PlanCurves = std::vector<std::vector<base::Vec2>>; // m
+
 struct PatternSettings {
   // what decides the layout: a number of strips, the roll (the fewest strips that fit), or given curves
   std::optional<int> strips_per_foil;
   Roll roll;
-  bool roll_given = false;                                            // then every strip must fit on it
-  std::map<std::string, std::vector<std::vector<base::Vec2>>> curves; // foil -> curves in plan, m
+  bool roll_given = false;                  // then every strip must fit on it
+  std::map<std::string, PlanCurves> curves; // foil -> curves in plan
   CuttingLines lines = CuttingLines::geodesic;
   std::optional<double> direction; // rad, of the strips' length from the plan's x axis; none: auto
   ChosenBy chosen_by = ChosenBy::distortion;

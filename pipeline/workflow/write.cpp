@@ -79,9 +79,9 @@ Node plan_node(const geometry::Plan& plan) {
     add(node, "shape", scalar("circle"));
     add(node, "radius", quantity(circle->radius, "m"));
   } else {
-    add(node, "shape", scalar("triangle"));
+    add(node, "shape", scalar(std::holds_alternative<geometry::Triangle>(plan) ? "triangle" : "polygon"));
     Node points = empty_list();
-    for (const base::Vec2& point : std::get<geometry::Triangle>(plan).points) {
+    for (const base::Vec2& point : geometry::corner_points(plan)) {
       points.items.push_back(lengths(point.x(), point.y()));
     }
     add(node, "points", points);
@@ -149,6 +149,63 @@ void add_path(Node& node, bool contact_stops, const Control& control) {
 void add_settings(Node& node, const FormfindSettings& settings) {
   add(node, "gauge_pressure", per_name(settings.gauge_pressure, "Pa"));
   add(node, "prestress", per_name(settings.prestress, "N/m"));
+}
+
+Node curves_node(const PlanCurves& curves) {
+  Node node = empty_list();
+  for (const std::vector<base::Vec2>& curve : curves) {
+    Node points = empty_list();
+    for (const base::Vec2& point : curve) points.items.push_back(lengths(point.x(), point.y()));
+    node.items.push_back(points);
+  }
+  return node;
+}
+
+Node compensation_node(const Compensation& compensation) {
+  if (compensation.kind == Compensation::Kind::none) return scalar("none");
+  if (compensation.kind == Compensation::Kind::elastic) return scalar("elastic");
+  Node node = empty_map();
+  add(node, "warp", quantity(compensation.warp, "1"));
+  add(node, "weft", quantity(compensation.weft, "1"));
+  return node;
+}
+
+// What has no effect beside the other settings is not written: it would be refused when read again.
+void add_settings(Node& node, const PatternSettings& settings) {
+  if (settings.strips_per_foil) add(node, "strips_per_foil", plain(*settings.strips_per_foil));
+  if (settings.roll_given) {
+    Node roll = empty_map();
+    add(roll, "width", quantity(settings.roll.width, "m"));
+    add(roll, "weld", quantity(settings.roll.weld, "m"));
+    add(roll, "selvedge", quantity(settings.roll.selvedge, "m"));
+    add(node, "roll", roll);
+  }
+  if (settings.curves.empty()) {
+    add(node, "lines", scalar(settings.lines == CuttingLines::geodesic ? "geodesic" : "straight"));
+    add(node, "direction", settings.direction ? quantity(*settings.direction, "rad") : scalar("auto"));
+    if (!settings.direction) {
+      add(node, "chosen_by", scalar(settings.chosen_by == ChosenBy::distortion ? "distortion" : "waste"));
+    }
+  } else {
+    Node curves = empty_map();
+    for (const auto& [foil, lines] : settings.curves) add(curves, foil, curves_node(lines));
+    add(node, "curves", curves);
+  }
+  const Compensation& compensation = settings.compensation;
+  add(node, "compensation", compensation_node(compensation));
+  if (compensation.kind == Compensation::Kind::elastic) add(node, "creep", quantity(compensation.creep, "1"));
+  if (compensation.kind != Compensation::Kind::none) {
+    add(node, "decompensation", quantity(settings.decompensation, "m"));
+  }
+  if (!settings.foils.empty()) {
+    Node foils = empty_list();
+    for (const std::string& foil : settings.foils) foils.items.push_back(scalar(foil));
+    add(node, "foils", foils);
+  }
+  Node allowance = empty_map();
+  add(allowance, "clamp", quantity(settings.clamp_allowance, "m"));
+  add(allowance, "notches", quantity(settings.notch_spacing, "m"));
+  add(node, "allowance", allowance);
 }
 
 void add_settings(Node& node, const InflateSettings& settings) {

@@ -37,6 +37,32 @@ StressPoints stress_points(const geometry::Mesh& mesh, const geometry::Block& bl
   });
 }
 
+// Which nodes lie on a side of only one of the block's elements: on the rim, or on a seam where the block is a strip.
+std::vector<char> on_open_sides(const geometry::Mesh& mesh, const geometry::Block& block) {
+  const auto corners = static_cast<std::size_t>(geometry::corners_per_element(mesh.element));
+  struct Side {
+    Index low, high, middle;
+  };
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(mesh.element_count(block)) * corners);
+  for (Index e = 0; e < mesh.element_count(block); ++e) {
+    const std::span<const Index> element = mesh.element_nodes(block, e);
+    for (std::size_t k = 0; k < corners; ++k) {
+      const auto [low, high] = std::minmax(element[k], element[(k + 1) % corners]);
+      sides.push_back({low, high, geometry::is_quadratic(mesh.element) ? element[corners + k] : low});
+    }
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
+  const auto same = [](const Side& a, const Side& b) { return a.low == b.low && a.high == b.high; };
+  std::vector<char> open(mesh.nodes.size(), 0);
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    if ((k > 0 && same(sides[k - 1], sides[k])) || (k + 1 < sides.size() && same(sides[k], sides[k + 1]))) continue;
+    for (const Index node : {sides[k].low, sides[k].high, sides[k].middle}) open[static_cast<std::size_t>(node)] = 1;
+  }
+  return open;
+}
+
 // terms of a complete polynomial
 int fill_terms(double s, double t, int terms, double* row) {
   const double all[] = {1, s, t, s * s, s * t, t * t};
@@ -54,10 +80,7 @@ std::vector<double> recover_at_nodes(const geometry::Mesh& mesh, const geometry:
   const auto corners = static_cast<std::size_t>(geometry::corners_per_element(mesh.element));
   const StressPoints points = stress_points(mesh, block, rule, positions);
 
-  std::vector<char> on_rim(nodes, 0);
-  for (const geometry::Edge& edge : mesh.edges) {
-    for (const Index node : edge.nodes) on_rim[static_cast<std::size_t>(node)] = 1;
-  }
+  const std::vector<char> on_rim = on_open_sides(mesh, block);
   std::vector<std::vector<Index>> around(nodes); // elements at each corner node
   for (Index e = 0; e < mesh.element_count(block); ++e) {
     const std::span<const Index> element = mesh.element_nodes(block, e);

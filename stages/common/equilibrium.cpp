@@ -149,7 +149,9 @@ private:
   std::vector<FoilResults> results(const assembly::Configuration& c) const {
     std::vector<FoilResults> all;
     for (const assembly::FoilEquations& foil : system_.foils()) {
-      all.push_back(foil_results(system_.model().mesh, foil.block, foil.membrane, begin_, c.positions, {}));
+      all.push_back(foil_results(system_.model().mesh, foil.block, foil.membrane,
+                                 drive_.state.foils[static_cast<std::size_t>(foil.block)].strip_of_element, begin_,
+                                 c.positions, {}));
     }
     return all;
   }
@@ -266,6 +268,7 @@ private:
     for (const std::string& text : drive_.modelled) summary.append("modelled", text);
     for (const std::string& text : drive_.not_modelled) summary.append("not_modelled", text);
     if (contact_found_) summary.append("warnings", *contact_found_);
+    if (drive_.report) drive_.report(state, foils, summary);
     summary.write(folder_ / "summary.json");
     if (!reached) {
       throw base::Error(base::ExitCode::no_equilibrium, verdict + "; the last good state is written and marked");

@@ -29,6 +29,8 @@ struct Drive {
   double temperature_to = 0;         // K, 0: as in the state
   std::vector<std::string> modelled; // for the summary, beside what all such stages model
   std::vector<std::string> not_modelled;
+  // what the stage itself has to say of the end state
+  std::function<void(const State& end, const std::vector<FoilResults>& foils, Summary& summary)> report;
 };
 int run_equilibrium(const Start& start, Drive drive);
 

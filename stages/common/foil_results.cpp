@@ -41,10 +41,77 @@ void widen(Extreme& extreme, double value, const Vec3& at, bool first) {
   if (first || value < extreme.min) extreme.min = value;
 }
 
+// The elements of one strip as a block of their own, and the numbers of their elements.
+struct Piece {
+  geometry::Block block;
+  std::vector<std::size_t> elements;
+};
+
+std::vector<Piece> pieces_of(const geometry::Mesh& mesh, const geometry::Block& block,
+                             std::span<const Index> strip_of_element) {
+  std::vector<Piece> pieces;
+  for (std::size_t e = 0; e < strip_of_element.size(); ++e) {
+    const auto strip = static_cast<std::size_t>(strip_of_element[e]);
+    if (strip >= pieces.size()) pieces.resize(strip + 1);
+    pieces[strip].elements.push_back(e);
+    const std::span<const Index> nodes = mesh.element_nodes(block, static_cast<Index>(e));
+    pieces[strip].block.connectivity.insert(pieces[strip].block.connectivity.end(), nodes.begin(), nodes.end());
+  }
+  return pieces;
+}
+
+// Nodal fields and extremes from `tensors` [element][point][cauchy 3, C 3].
+void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry::StressRule rule,
+             std::span<const Index> strip_of_element, std::span<const Vec3> now, const std::vector<double>& tensors,
+             FoilResults& r) {
+  const std::size_t nodes = mesh.nodes.size();
+  for (std::vector<double>* field :
+       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2}) {
+    field->assign(nodes, 0.0);
+  }
+  bool first = true;
+  std::vector<char> seen(nodes, 0); // by an earlier strip
+  const auto take = [&](const geometry::Block& piece, std::span<const double> values) {
+    const std::vector<double> nodal = solver::recovery::recover_at_nodes(mesh, piece, rule, now, values, 6);
+    std::vector<Index> own = piece.connectivity;
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    for (const Index node : own) {
+      const auto k = static_cast<std::size_t>(node);
+      const double* t = nodal.data() + 6 * k;
+      const Pair stress = eigenvalues(t[0], t[1], t[2]);
+      const Pair strain = strains_of(t[3], t[4], t[5]);
+      const auto set = [&](Extreme& extreme, std::vector<double>& field, double value) {
+        widen(extreme, value, now[k], first);
+        field[k] = seen[k] != 0 ? std::max(field[k], value) : value;
+      };
+      set(r.von_mises, r.nodal_von_mises, von_mises_of(stress));
+      set(r.stress1, r.nodal_stress1, stress.larger);
+      set(r.stress2, r.nodal_stress2, stress.smaller);
+      set(r.strain1, r.nodal_strain1, strain.larger);
+      set(r.strain2, r.nodal_strain2, strain.smaller);
+      seen[k] = 1;
+      first = false;
+    }
+  };
+  if (strip_of_element.empty()) return take(block, tensors);
+  const std::size_t per_element = tensors.size() / strip_of_element.size();
+  for (const Piece& piece : pieces_of(mesh, block, strip_of_element)) {
+    std::vector<double> values;
+    values.reserve(piece.elements.size() * per_element);
+    for (const std::size_t e : piece.elements) {
+      const auto begin = tensors.begin() + static_cast<std::ptrdiff_t>(e * per_element);
+      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(per_element));
+    }
+    take(piece.block, values);
+  }
+}
+
 } // namespace
 
 FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
-                         std::span<const Vec3> start, std::span<const Vec3> now, std::span<const double> history) {
+                         std::span<const Index> strip_of_element, std::span<const Vec3> start,
+                         std::span<const Vec3> now, std::span<const double> history) {
   const geometry::Block& b = mesh.blocks[static_cast<std::size_t>(block)];
   FoilResults r;
   r.name = b.name;
@@ -86,34 +153,10 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   }
   r.compressed_area /= total;
 
-  const std::vector<double> nodal =
-      solver::recovery::recover_at_nodes(mesh, b, membrane.reference.rule, now, tensors, 6);
-  const std::size_t nodes = mesh.nodes.size();
-  for (std::vector<double>* field :
-       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2}) {
-    field->assign(nodes, 0.0);
-  }
-  std::vector<char> seen(nodes, 0);
-  bool first = true;
+  recover(mesh, b, membrane.reference.rule, strip_of_element, now, tensors, r);
   for (const Index node : b.connectivity) {
     const auto k = static_cast<std::size_t>(node);
-    if (seen[k] != 0) continue;
-    seen[k] = 1;
-    const double* t = nodal.data() + 6 * k;
-    const Pair stress = eigenvalues(t[0], t[1], t[2]);
-    const Pair strain = strains_of(t[3], t[4], t[5]);
-    r.nodal_von_mises[k] = von_mises_of(stress);
-    r.nodal_stress1[k] = stress.larger;
-    r.nodal_stress2[k] = stress.smaller;
-    r.nodal_strain1[k] = strain.larger;
-    r.nodal_strain2[k] = strain.smaller;
-    widen(r.von_mises, r.nodal_von_mises[k], now[k], first);
-    widen(r.stress1, stress.larger, now[k], first);
-    widen(r.stress2, stress.smaller, now[k], first);
-    widen(r.strain1, strain.larger, now[k], first);
-    widen(r.strain2, strain.smaller, now[k], first);
     r.max_deflection = std::max(r.max_deflection, (now[k] - start[k]).norm());
-    first = false;
   }
   return r;
 }

@@ -34,8 +34,11 @@ struct FoilResults {
   std::vector<double> cauchy, thickness;
 };
 
+// `strip_of_element`: of a foil welded from strips, else empty. Stress jumps at seams and its frames differ: each strip
+// is recovered by itself, and a seam's node carries the larger value of its strips.
 FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
-                         std::span<const Vec3> start, std::span<const Vec3> now, std::span<const double> history);
+                         std::span<const Index> strip_of_element, std::span<const Vec3> start,
+                         std::span<const Vec3> now, std::span<const double> history);
 
 // Writes the keys mesh.*: elements and unknowns of the foils.
 void summarize_mesh(const State& state, Summary& summary);
@@ -44,8 +47,7 @@ void summarize_mesh(const State& state, Summary& summary);
 void summarize(const FoilResults& results, Summary& summary);
 
 // Adds the fields that ParaView shows: displacement; von_mises, principal stresses and strains at the nodes of each
-// foil
-// (`von_mises.upper`); the mean von Mises stress of each element; stress and thickness at the stress points.
+// foil (`von_mises.upper`); the mean von Mises stress of each element; stress and thickness at the stress points.
 void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> start, State& state);
 
 } // namespace pneuma::stages::common

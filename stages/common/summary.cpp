@@ -25,7 +25,8 @@ struct Summary::Data {
     std::size_t begin = 0;
     for (;;) {
       const std::size_t end = path.find('.', begin);
-      node = &(*node)[path.substr(begin, end - begin)];
+      const std::string key = path.substr(begin, end - begin);
+      node = key.starts_with('#') ? &(*node)[std::stoul(key.substr(1))] : &(*node)[key];
       if (end == std::string::npos) return *node;
       begin = end + 1;
     }

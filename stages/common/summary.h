@@ -20,7 +20,8 @@ public:
   Summary(const Summary&) = delete;
   Summary& operator=(const Summary&) = delete;
 
-  // `path` is dotted: "chambers.main.volume"; names may not hold dots.
+  // `path` is dotted: "chambers.main.volume"; names may not hold dots. #N is a place in a list:
+  // "patterns.upper.strips.#0.width".
   void set(const std::string& path, double value);
   void set(const std::string& path, int value);
   void set(const std::string& path, bool value);

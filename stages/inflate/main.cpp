@@ -5,6 +5,7 @@
 #include "geometry/base/errors.h"
 #include "solver/material/prestress.h"
 #include "stages/common/equilibrium.h"
+#include "stages/inflate/against_target.h"
 
 namespace pneuma::stages::inflate {
 
@@ -47,12 +48,13 @@ int run(int argc, char** argv) {
   drive.steps = settings.control.steps;
 
   const bool from_form = start.stage().from_run == "formfind";
+  const bool from_strips = start.stage().from_run == "pattern";
   const bool prestressed = from_form && settings.reference == workflow::Reference::prestressed;
   for (std::size_t b = 0; b < start.workflow.cushion.foils.size(); ++b) {
     pipeline::state::Foil& foil = drive.state.foils[b];
-    if (prestressed) {
-      foil.predeformation = predeformation(start, b, foil.prestress);
-    } else if (!from_form) {
+    if (prestressed || (from_strips && foil.strips.empty() && !foil.prestress.empty())) {
+      foil.predeformation = predeformation(start, b, foil.prestress); // a foil in one piece keeps its form's prestress
+    } else if (!from_form && !from_strips) {
       foil.reference =
           solver::element::corner_coordinates(drive.state.mesh.blocks[b].connectivity, drive.state.mesh.nodes);
       if (!settings.prestress.empty()) {
@@ -71,11 +73,20 @@ int run(int argc, char** argv) {
   drive.model = common::make_model(start, drive.state, 0, 1);
   for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
     pipeline::state::Chamber& chamber = drive.state.chambers[c];
-    if (!prestressed) chamber.gauge_pressure = 0; // without stress nothing holds a pressure yet
+    if (!prestressed && !from_strips) chamber.gauge_pressure = 0; // without stress nothing holds a pressure yet
     drive.model.chambers[c].gas =
         solver::chamber::Regulated{chamber.gauge_pressure, settings.gauge_pressure.at(chamber.name)};
   }
   drive.modelled.emplace_back("regulated air");
+  if (from_strips) {
+    drive.modelled.emplace_back("foils welded from flat strips: their shapes are the reference");
+    std::vector<std::vector<double>> area;
+    for (const auto& foil : drive.model.foils) area.push_back(foil ? foil->reference.area : std::vector<double>());
+    drive.report = [&start, area](const common::State& end, const std::vector<common::FoilResults>& foils,
+                                  common::Summary& summary) {
+      report_against_target(start.state, end, foils, area, summary);
+    };
+  }
   if (start.arguments.check) return 0;
   return common::run_equilibrium(start, std::move(drive));
 }

@@ -22,9 +22,10 @@ geometry::Mesh make_mesh(const workflow::Cushion& cushion, const workflow::MeshS
   options.element = settings.element;
   options.size = settings.size;
   options.divisions = settings.divisions;
-  // every plan there is so far has a regular pattern
-  options.pattern = settings.pattern == workflow::MeshPattern::unstructured ? meshing::Pattern::unstructured
-                                                                            : meshing::Pattern::structured;
+  const bool has_regular_pattern = !std::holds_alternative<geometry::Polygon>(cushion.plan);
+  const bool structured = settings.pattern == workflow::MeshPattern::structured ||
+                          (settings.pattern == workflow::MeshPattern::automatic && has_regular_pattern);
+  options.pattern = structured ? meshing::Pattern::structured : meshing::Pattern::unstructured;
   const geometry::Mesh plan = meshing::mesh_plan(cushion.plan, options);
   std::vector<meshing::Layer> layers;
   layers.reserve(cushion.foils.size() + 1);

@@ -26,6 +26,8 @@ using pneuma::base::Mat32;
 const Rectangle rectangle{6, 3};
 const Circle circle{2.5};
 const Triangle triangle{{{-1, 0}, {3, 0.5}, {0.5, 2.5}}};
+const Polygon pentagon{{{-2, -1}, {1.5, -1.5}, {2.5, 0.5}, {0, 2}, {-2.2, 1}}};
+const Polygon l_shape{{{-1, -1}, {3, -1}, {3, 1}, {1, 1}, {1, 3}, {-1, 3}}};
 
 struct Case {
   std::string name;
@@ -36,10 +38,11 @@ struct Case {
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   const std::vector<std::pair<std::string, Plan>> plans = {
-      {"Rectangle", rectangle}, {"Circle", circle}, {"Triangle", triangle}};
+      {"Rectangle", rectangle}, {"Circle", circle}, {"Triangle", triangle}, {"Pentagon", pentagon}, {"L", l_shape}};
   for (const auto& [name, plan] : plans) {
     for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
       for (const Pattern pattern : {Pattern::structured, Pattern::unstructured}) {
+        if (pattern == Pattern::structured && std::holds_alternative<Polygon>(plan)) continue;
         for (const double size : {0.9, 0.25}) {
           const std::string text = name + name_of(element) + (pattern == Pattern::structured ? "Structured" : "Free") +
                                    (size > 0.5 ? "Coarse" : "Fine");
@@ -114,8 +117,9 @@ TEST(EveryPlanMesh, HasTheAreaOfThePlan) {
 }
 
 TEST(EveryPlanMesh, HasItsRimNodesOnTheRim) {
-  for_each_case([](const Case&, const Mesh& mesh) {
+  for_each_case([](const Case& test_case, const Mesh& mesh) {
     const double far = 1e-15;
+    const std::vector<pneuma::base::Vec2> corners = corner_points(test_case.plan);
     for (const Edge& edge : mesh.edges) {
       for (const Index i : edge.nodes) {
         const Vec3& x = node(mesh, i);
@@ -137,8 +141,8 @@ TEST(EveryPlanMesh, HasItsRimNodesOnTheRim) {
         }
         if (edge.name[0] == 'e' && edge.name.size() == 2) {
           const auto k = static_cast<std::size_t>(edge.name[1] - '1');
-          const auto a = triangle.points[k];
-          const auto b = triangle.points[(k + 1) % 3];
+          const auto a = corners[k];
+          const auto b = corners[(k + 1) % corners.size()];
           const double off = (b - a).x() * (x.head<2>() - a).y() - (b - a).y() * (x.head<2>() - a).x();
           EXPECT_NEAR(off, 0, 1e-14);
         }
@@ -353,6 +357,47 @@ TEST(StructuredMesh, OfAClockwiseTriangleNamesTheSameEdges) {
   EXPECT_EQ(node(mesh, mesh.edges[2].nodes.back()).head<2>(), clockwise.points[2]);
 }
 
+TEST(UnstructuredMesh, OfAClockwisePolygonNamesTheSameEdges) {
+  Polygon clockwise = l_shape;
+  std::reverse(clockwise.points.begin(), clockwise.points.end());
+  for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
+    const Mesh mesh = mesh_plan(clockwise, {element, 0.5, std::nullopt, Pattern::unstructured});
+    EXPECT_NEAR(area_of(mesh), 12, 1e-13);
+    ASSERT_EQ(mesh.edges.size(), 6U);
+    for (std::size_t k = 0; k < 6; ++k) {
+      // counterclockwise along e1 = points 0-1: from point 1 to point 0
+      EXPECT_EQ(mesh.edges[k].name, "e" + std::to_string(k + 1));
+      EXPECT_EQ(node(mesh, mesh.edges[k].nodes.front()).head<2>(), clockwise.points[(k + 1) % 6]);
+      EXPECT_EQ(node(mesh, mesh.edges[k].nodes.back()).head<2>(), clockwise.points[k]);
+    }
+  }
+}
+
+TEST(UnstructuredMesh, OfAPolygonDividesItsSidesInProportionToTheLongest) {
+  const Polygon plan{{{0, 0}, {4, 0}, {4, 1}, {2, 1.5}, {0, 1}}};
+  const auto divisions = [&](ElementType element, int n) {
+    const Mesh mesh = mesh_plan(plan, {element, std::nullopt, std::array{n, n}, Pattern::unstructured});
+    EXPECT_NEAR(area_of(mesh), 5, 1e-13);
+    std::vector<std::size_t> counts;
+    for (const Edge& edge : mesh.edges) counts.push_back((edge.nodes.size() - 1) / (is_quadratic(element) ? 2 : 1));
+    return counts;
+  };
+  EXPECT_EQ(divisions(ElementType::T6, 12), (std::vector<std::size_t>{12, 3, 6, 6, 3}));
+  EXPECT_EQ(divisions(ElementType::T3, 2), (std::vector<std::size_t>{2, 2, 2, 2, 2}));
+  EXPECT_EQ(divisions(ElementType::Q9, 12), (std::vector<std::size_t>{12, 4, 6, 6, 4}));
+  EXPECT_EQ(divisions(ElementType::Q4, 2), (std::vector<std::size_t>{2, 2, 2, 2, 2}));
+}
+
+TEST(UnstructuredMesh, OfAPolygonMayHaveStraightCornersAndNarrowArms) {
+  // a corner in the middle of a side, two arms, a slot between them
+  const Polygon comb{{{0, 0}, {3, 0}, {6, 0}, {6, 3}, {5.6, 3}, {5.6, 0.5}, {0.4, 0.5}, {0.4, 3}, {0, 3}}};
+  for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
+    const Mesh mesh = mesh_plan(comb, {element, 0.3, std::nullopt, Pattern::unstructured});
+    EXPECT_NEAR(area_of(mesh), area(comb), 1e-13);
+    EXPECT_EQ(mesh.edges[1].name, "e2");
+  }
+}
+
 template <class Error>
 std::string message_of(const Plan& plan, const MeshOptions& options) {
   try {
@@ -383,6 +428,39 @@ TEST(PlanMesh, RefusesBadOptionsAndSaysWhatIsAllowed) {
   EXPECT_THAT(message_of<GeometryError>(Rectangle{6, 0}, size(1)), HasSubstr("width must be positive"));
   EXPECT_THAT(message_of<GeometryError>(Circle{-1}, size(1)), HasSubstr("radius must be positive"));
   EXPECT_THAT(message_of<GeometryError>(Triangle{{{0, 0}, {1, 1}, {2, 2}}}, size(1)), HasSubstr("lie on a line"));
+}
+
+TEST(PlanMesh, RefusesPolygonsThatAreNoRegionWithThePlace) {
+  using testing::HasSubstr;
+  const auto fault = [](std::vector<pneuma::base::Vec2> points) {
+    return message_of<GeometryError>(Polygon{std::move(points)},
+                                     {ElementType::T6, 0.5, std::nullopt, Pattern::unstructured});
+  };
+  EXPECT_THAT(fault({{0, 0}, {1, 0}}), HasSubstr("three points at least, not 2"));
+  EXPECT_THAT(fault({{0, 0}, {1, 0}, {std::nan(""), 1}}), HasSubstr("not finite"));
+  EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 0}, {1, 2}}),
+              HasSubstr("the points 2 and 3 of the outline are the same, (1, 0)"));
+  EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 2}, {0, 0}}), HasSubstr("the points 4 and 1 of the outline are the same"));
+  EXPECT_THAT(fault({{0, 0}, {2, 0}, {0, 2}, {2, 2}}),
+              HasSubstr("crosses or touches itself: its edges e2 from (2, 0) and e4 from (2, 2) meet"));
+  EXPECT_THAT(fault({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), HasSubstr("crosses or touches itself"));
+  EXPECT_THAT(fault({{0, 0}, {2, 0}, {4, 0}, {3, 1e-6}}), HasSubstr("lie on a line"));
+  EXPECT_THAT(fault({{0, 0}, {2, 0}, {2, 2}, {2, 3}, {2, 1.5}, {0, 2}}), HasSubstr("crosses or touches itself"));
+  EXPECT_THAT(fault({{0, 0}, {4, 0}, {2, 0}, {2, 2}}), HasSubstr("its edges e1 from (0, 0) and e3 from (2, 0) meet"));
+}
+
+TEST(PlanMesh, RefusesOptionsThatAPolygonDoesNotHave) {
+  using testing::HasSubstr;
+  EXPECT_THAT(message_of<InputError>(pentagon, {ElementType::T6, 0.5, std::nullopt, Pattern::structured}),
+              HasSubstr("a polygon has no structured pattern; allowed: unstructured"));
+  EXPECT_THAT(
+      message_of<InputError>(pentagon, {ElementType::T6, std::nullopt, std::array{1, 1}, Pattern::unstructured}),
+      HasSubstr("mesh divisions 1 along the longest side: at least 2"));
+  EXPECT_THAT(
+      message_of<InputError>(pentagon, {ElementType::Q4, std::nullopt, std::array{7, 7}, Pattern::unstructured}),
+      HasSubstr("even"));
+  EXPECT_THAT(message_of<InputError>(pentagon, {ElementType::T3, 1e-3, std::nullopt, Pattern::unstructured}),
+              HasSubstr("are the most"));
 }
 
 TEST(UnstructuredMesh, KeepsItsShapeFromAMillimetreToAHundredMetres) {
@@ -417,6 +495,9 @@ TEST(Outline, KnowsAreaPerimeterAndNames) {
   EXPECT_NEAR(area(equilateral(2)), std::sqrt(3.0), 1e-15);
   EXPECT_NEAR(perimeter(equilateral(2)), 6, 1e-15);
   EXPECT_EQ(edge_names(rectangle), (std::vector<std::string>{"south", "east", "north", "west"}));
+  EXPECT_DOUBLE_EQ(area(l_shape), 12);
+  EXPECT_DOUBLE_EQ(perimeter(l_shape), 16);
+  EXPECT_EQ(edge_names(pentagon), (std::vector<std::string>{"e1", "e2", "e3", "e4", "e5"}));
 }
 
 } // namespace

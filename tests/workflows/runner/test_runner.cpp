@@ -69,7 +69,7 @@ bool happens(const std::function<bool()>& condition) {
 class RunnerTest : public testing::Test {
 protected:
   RunnerTest() {
-    for (const char* run : {"mesh", "formfind", "inflate", "wind"}) {
+    for (const char* run : {"mesh", "formfind", "pattern", "inflate", "wind"}) {
       const auto file = folder.write(fmt::format("bin/pneuma-{}", run), script);
       std::filesystem::permissions(file, std::filesystem::perms::owner_all);
     }
@@ -366,6 +366,33 @@ TEST_F(RunnerTest, StatusSaysWhatIsStaleAndShowsResults) {
           "inflated  inflate   stale: settings changed (stages.inflated.gauge_pressure.bottom 300 Pa -> 310 Pa)"));
   EXPECT_THAT(outcome.text, HasSubstr("gust      wind      stale: `inflated` is stale\n"));
   EXPECT_THAT(ran(), IsEmpty());
+}
+
+TEST_F(RunnerTest, StripsStandBetweenFormAndInflation) {
+  change("from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, reference: prestressed",
+         "from: strips, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}");
+  change("  inflated:", "  strips: {run: pattern, from: form, strips_per_foil: 4}\n  inflated:");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_THAT(ran(), UnorderedElementsAre("mesh", "form", "strips", "inflated", "gust", "calm"));
+  EXPECT_THAT(text_of(folder.path() / "out/w/strips/stage.yaml"), HasSubstr("strips_per_foil: 4"));
+
+  change("strips_per_foil: 4", "strips_per_foil: 5");
+  EXPECT_THAT(pneuma({"status", "w.yaml"}).text,
+              HasSubstr("strips    pattern   stale: settings changed (stages.strips.strips_per_foil 4 -> 5)\n"));
+}
+
+TEST_F(RunnerTest, StatusOfAPatternShowsStripsWasteAndMismatch) {
+  change("  inflated:", "  strips: {run: pattern, from: form, strips_per_foil: 2}\n  inflated:");
+  ASSERT_EQ(pneuma({"w.yaml"}).code, 0);
+  folder.write("out/w/strips/summary.json",
+               R"({"verdict": "cut", "patterns": {"lower": {"strips": [{"name": "lower-1"}]}, "odd": 3,
+                   "upper": {"strips": [{"name": "upper-1", "seam_mismatch_max": 2e-4},
+                                        {"name": "upper-2", "seam_mismatch_max": 3e-4}],
+                             "waste_fraction": 0.123, "weld_length": 12.5}}})");
+  const std::string text = pneuma({"status", "w.yaml"}).text;
+  EXPECT_THAT(text, HasSubstr("strips    pattern   fresh\n    verdict: cut\n    pattern lower: 1 strips\n"
+                              "    pattern upper: 2 strips, seams differ by 0.3 mm at most, waste 12.3 %, "
+                              "welds 12.5 m\n"));
 }
 
 TEST_F(RunnerTest, MistypedCommandGetsASuggestion) {

@@ -246,6 +246,19 @@ TEST_F(Stages, EquilateralTriangleGoesThroughTheWholeChain) {
   EXPECT_NEAR(summary("gust")["reactions"]["sum"][2].get<double>(), weight - 200 * plan, 1e-6 * 200 * plan);
 }
 
+TEST_F(Stages, LShapedPolygonGoesThroughTheWholeChain) {
+  std::string text = cushion("T6", "  gust: {run: wind, from: inflated, gas: {main: {law: closed}}, loads: [{name: s, "
+                                   "foil: lower, wind: 0.2 kPa}]}\n");
+  text.replace(text.find("{shape: rectangle, length: 6 m, width: 3 m}"), 43,
+               "{shape: polygon, points: [[0 m, 0 m], [0 m, 4 m], [2 m, 4 m], [2 m, 2 m], [4 m, 2 m], [4 m, 0 m]]}");
+  text.replace(text.find("divisions: [16, 8]"), 18, "size: 0.4 m");
+  write(text);
+  const Outcome run = pneuma("run w.yaml");
+  ASSERT_EQ(run.code, 0) << run.text;
+  const double weight = summary("inflated")["reactions"]["sum"][2];
+  EXPECT_NEAR(summary("gust")["reactions"]["sum"][2].get<double>(), weight - 200 * 12, 1e-6 * 200 * 12);
+}
+
 TEST_F(Stages, EachStageRunsAloneAndRefusesADamagedOrWrongState) {
   write(cushion("T3", ""));
   ASSERT_EQ(pneuma("run w.yaml").code, 0);

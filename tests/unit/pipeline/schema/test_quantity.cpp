@@ -89,6 +89,16 @@ TEST(Quantity, TextReadsBackToTheSameBits) {
   }
 }
 
+TEST(Quantity, RatioIsReadAsOneToo) {
+  for (const double value : {0.003, 1.0 / 3, 0.0}) {
+    const Quantity read = parse_quantity(quantity_text(value, "1"), "1");
+    EXPECT_EQ(read.error, "");
+    EXPECT_EQ(read.value, value);
+  }
+  EXPECT_EQ(parse_quantity("3 1", "m").error,
+            "`3 1` has a unit that begins with a digit; expected a length such as `250 um`");
+}
+
 TEST(Number, FillsTheWholeText) {
   EXPECT_EQ(parse_number("0.45"), 0.45);
   EXPECT_EQ(parse_number("1e-3"), 1e-3);

@@ -105,6 +105,15 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
     foil.prestress = numbers(3 * gauss);
     foil.history_names = {"plastic_strain_11", "plastic_strain_22"};
     foil.history = numbers(2 * gauss);
+    // the weather side alone is welded: its elements of the left and the right half, the seam where they meet
+    if (state.foils.empty()) {
+      foil.strips = {"upper-1", "upper-2"};
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        foil.strip_of_element.push_back(2 * elements[e][0].first < columns - 1 ? 0 : 1);
+      }
+      foil.seams = {{"S1", 0, 1, {block.connectivity[0], block.connectivity[1], block.connectivity[2]}},
+                    {"S2", 1, 0, {block.connectivity[1], block.connectivity[0]}}};
+    }
     state.foils.push_back(foil);
   }
   state.chambers = {{"main", 0, 1, 0.05, GasLaw::closed, 1.4, 400.0, 101325.0, 296.15, 9.5}};

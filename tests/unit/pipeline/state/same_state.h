@@ -57,6 +57,15 @@ inline void expect_same(const pipeline::state::State& a, const pipeline::state::
     EXPECT_TRUE(same_bits(a.foils[i].prestress, b.foils[i].prestress));
     EXPECT_TRUE(same_bits(a.foils[i].history, b.foils[i].history));
     EXPECT_EQ(a.foils[i].history_names, b.foils[i].history_names);
+    EXPECT_EQ(a.foils[i].strips, b.foils[i].strips);
+    EXPECT_EQ(a.foils[i].strip_of_element, b.foils[i].strip_of_element);
+    ASSERT_EQ(a.foils[i].seams.size(), b.foils[i].seams.size());
+    for (std::size_t k = 0; k < a.foils[i].seams.size(); ++k) {
+      EXPECT_EQ(a.foils[i].seams[k].name, b.foils[i].seams[k].name);
+      EXPECT_EQ(a.foils[i].seams[k].left, b.foils[i].seams[k].left);
+      EXPECT_EQ(a.foils[i].seams[k].right, b.foils[i].seams[k].right);
+      EXPECT_EQ(a.foils[i].seams[k].nodes, b.foils[i].seams[k].nodes);
+    }
   }
   EXPECT_EQ(a.fixed, b.fixed);
   ASSERT_EQ(a.chambers.size(), b.chambers.size());

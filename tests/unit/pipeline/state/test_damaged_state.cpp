@@ -101,6 +101,28 @@ TEST(DamagedState, WithNodesOutOfRangeIsRefused) {
   EXPECT_THAT(verdict_on(bytes), HasSubstr("names node 77"));
 }
 
+TEST(DamagedState, WithAnElementOfAnUnknownStripIsRefused) {
+  State state = cushion_state(ElementType::T3, 2, 1);
+  std::vector<Index>& strips = state.foils[0].strip_of_element;
+  strips = {1, 1, 0, 1}; // as nothing else in the file
+  const Index wrong[] = {1, 1, 0, 5};
+  const std::string bytes =
+      replaced(to_bytes(state), {reinterpret_cast<const char*>(strips.data()), strips.size() * sizeof(Index)},
+               {reinterpret_cast<const char*>(wrong), sizeof wrong});
+  EXPECT_THAT(verdict_on(bytes), HasSubstr("foil upper: an element is in strip 5, but there are 2"));
+}
+
+TEST(DamagedState, WithSeamsLongerThanTheirNodesIsRefused) {
+  const std::int64_t counts[] = {3, 2}; // of the two seams
+  for (const std::int64_t other : {1, 3, 1000, -2}) {
+    const std::int64_t wrong[] = {3, other};
+    const std::string bytes =
+        replaced(to_bytes(cushion_state(ElementType::T3, 2, 1)), {reinterpret_cast<const char*>(counts), sizeof counts},
+                 {reinterpret_cast<const char*>(wrong), sizeof wrong});
+    EXPECT_THAT(verdict_on(bytes), HasSubstr("/pneuma/foils/0000/seams/count: does not sum to the nodes"));
+  }
+}
+
 TEST(DamagedState, OfAnotherSchemaVersionSaysWhich) {
   const std::string text = verdict_on(hdf5::new_file(
       [](const hdf5::Group& root) { root.create("pneuma").set_attribute("schema", std::vector<std::int64_t>{99}); }));

@@ -203,6 +203,30 @@ const Wrong wrong_states[] = {
     {"MarksMissing", [](State& s) { s.fixed.clear(); }, "marks of held coordinates"},
     {"ShortHistory", [](State& s) { s.foils[0].history.pop_back(); },
      "foil upper: history has 47 values instead of 48"},
+    {"ElementWithoutStrip", [](State& s) { s.foils[0].strip_of_element.pop_back(); },
+     "foil upper: strip_of_element has 7 values instead of 8"},
+    {"StripsOfElementsWithoutStrips", [](State& s) { s.foils[1].strip_of_element = {0}; },
+     "foil lower: strip_of_element has 1 values instead of 0"},
+    {"UnknownStrip", [](State& s) { s.foils[0].strip_of_element[3] = 2; },
+     "foil upper: an element is in strip 2, but there are 2"},
+    {"NegativeStrip", [](State& s) { s.foils[0].strip_of_element[3] = -1; }, "an element is in strip -1"},
+    {"SameStripName", [](State& s) { s.foils[0].strips[1] = "upper-1"; }, "foil upper: two strips have the same name"},
+    {"SeamToAnUnknownStrip", [](State& s) { s.foils[0].seams[0].right = 2; },
+     "seam S1 of foil upper names strip 2, but there are 2"},
+    {"SeamToANegativeStrip", [](State& s) { s.foils[0].seams[1].left = -1; }, "seam S2 of foil upper names strip -1"},
+    {"SeamWithItself", [](State& s) { s.foils[0].seams[0].right = 0; }, "joins strip 0 with itself"},
+    {"SeamOfOneNode", [](State& s) { s.foils[0].seams[1].nodes.pop_back(); }, "seam S2 of foil upper has 1 nodes"},
+    {"SeamNodeOutOfRange", [](State& s) { s.foils[0].seams[0].nodes[1] = 1000; },
+     "seam S1 of foil upper names node 1000"},
+    {"SeamWithoutStrips", [](State& s) { s.foils[1].seams = s.foils[0].seams; },
+     "seam S1 of foil lower names strip 0, but there are 0"},
+    {"BaseOfStrips",
+     [](State& s) {
+       s.mesh.blocks[1].kind = geometry::BlockKind::base;
+       s.foils[1] = {};
+       s.foils[1].strips = {"lower-1"};
+     },
+     "the base lower has strips"},
     {"ShortField", [](State& s) { s.fields[0].values.pop_back(); }, "field displacement has"},
     {"SameName",
      [](State& s) {

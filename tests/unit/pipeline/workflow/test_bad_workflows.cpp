@@ -40,11 +40,10 @@ std::vector<std::string> take_places(std::string& text) {
   return places;
 }
 
-TEST_P(BadWorkflow, IsToldWhatAndWhere) {
-  const Bad& bad = GetParam();
-  std::string text = replaced(example, bad.before, bad.after);
+void expect_messages(const std::string& before, const std::string& after, const std::vector<const char*>& messages) {
+  std::string text = replaced(example, before, after);
   const std::vector<std::string> places = take_places(text);
-  ASSERT_EQ(places.size(), bad.messages.size());
+  ASSERT_EQ(places.size(), messages.size());
   const Folder folder;
   const ReadResult result = read_workflow(folder.write("w.yaml", text));
   std::string all;
@@ -53,11 +52,17 @@ TEST_P(BadWorkflow, IsToldWhatAndWhere) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Problem& problem = result.problems[i];
     EXPECT_EQ(std::to_string(problem.mark.line) + ":" + std::to_string(problem.mark.column), places[i]) << all;
-    EXPECT_THAT(to_string(problem), testing::HasSubstr(bad.messages[i]));
+    EXPECT_THAT(to_string(problem), testing::HasSubstr(messages[i]));
     EXPECT_TRUE(problem.error);
   }
 }
 
+TEST_P(BadWorkflow, IsToldWhatAndWhere) {
+  const Bad& bad = GetParam();
+  expect_messages(bad.before, bad.after, bad.messages);
+}
+
+constexpr const char* rectangle = "{shape: rectangle, length: 6 m, width: 3 m}";
 constexpr const char* foil = "{name: upper, material: etfe, thickness: 250 um}";
 constexpr const char* mesh = "mesh: {element: T6, size: 0.15 m}";
 constexpr const char* form =
@@ -147,11 +152,44 @@ const Bad cases[] = {
     {"UnknownShape",
      "shape: rectangle",
      "shape: @rectangel",
-     {"`shape` must be one of: rectangle, circle, triangle, not `rectangel`; did you mean `rectangle`?"}},
-    {"PolygonPlan",
+     {"`shape` must be one of: rectangle, circle, triangle, polygon, not `rectangel`; did you mean `rectangle`?"}},
+    {"RegularPolygonPlan",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "{shape: @regular_polygon, sides: 6, radius: 2 m}",
-     {"`shape: regular_polygon` is not available yet; rectangle, circle and triangle are available"}},
+     {"`shape: regular_polygon` is not available yet; rectangle, circle, triangle and polygon are available"}},
+    {"PolygonWithoutPoints",
+     rectangle,
+     "@{shape: polygon}",
+     {"`plan` lacks the key `points`: corners in order, either way round (a list [...])"}},
+    {"PolygonOfTwoPoints",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [1 m, 1 m]]}",
+     {"`points` must have at least 3 entries, not 2"}},
+    {"PolygonPointWithoutUnit",
+     rectangle,
+     "{shape: polygon, points: [[0 m, 0 m], [1 m, @1], [2 m, 5 m]]}",
+     {"`1` has no unit; expected a length"}},
+    {"PolygonPointInSpace",
+     rectangle,
+     "{shape: polygon, points: [[0 m, 0 m], @[1 m, 1 m, 0 m], [2 m, 5 m]]}",
+     {"entry 2 of `points` must have 2 entries, not 3"}},
+    {"PolygonThatCrossesItself",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [2 m, 0 m], [0 m, 2 m], [2 m, 2 m]]}",
+     {"the outline crosses or touches itself: its edges e2 from (2, 0) and e4 from (2, 2) meet"}},
+    {"PolygonWithARepeatedPoint",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [2 m, 0 m], [200 cm, 0 m], [2 m, 2 m]]}",
+     {"the points 2 and 3 of the outline are the same, (2, 0); leave one out"}},
+    {"PolygonWithoutArea",
+     rectangle,
+     "{shape: polygon, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
+     {"the points of the outline lie on a line, or nearly so"}},
+    {"UnknownEdgeOfAPolygon",
+     "{shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n",
+     "{shape: polygon, points: [[0 m, 0 m], [2 m, 0 m], [2 m, 2 m], [0 m, 1 m]]}\n  edges: {e1: clamped, @e5: "
+     "clamped}\n",
+     {"the plan has no edge `e5`; did you mean `e1`?; its edges: e1, e2, e3, e4"}},
     {"TriangleWithoutSize",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "@{shape: triangle}",
@@ -159,7 +197,7 @@ const Bad cases[] = {
     {"FlatTriangle",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "{shape: triangle, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
-     {"the three `points` lie on a line"}},
+     {"the points of the outline lie on a line, or nearly so"}},
     {"SizeAndDivisions",
      mesh,
      "mesh: @{size: 0.15 m, divisions: 4}",
@@ -204,19 +242,29 @@ const Bad cases[] = {
      "  again: {run: formfind, from: @inflated, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 "
      "kN/m}}",
      {"`run: formfind` cannot start from `inflated` (`run: inflate`); it starts from: mesh"}},
-    {"InflateFromPatterns",
+    {"PatternFromMesh",
      "  gust:",
-     "  strips: {run: @pattern, from: form}\n  again: {run: inflate, from: strips, gauge_pressure: {top: 1 Pa, bottom: "
-     "1 Pa}}\n  gust:",
-     {"`run: pattern` is not available yet"}},
-    {"PatternStage",
+     "  strips: {run: pattern, from: @mesh, strips_per_foil: 6}\n  gust:",
+     {"`run: pattern` cannot start from `mesh` (`run: mesh`); it starts from: formfind"}},
+    {"WindFromPattern",
+     "from: inflated",
+     "from: @strips\n  strips: {run: pattern, from: form, strips_per_foil: 6}\n  other:\n    run: wind\n    from: "
+     "inflated",
+     {"`run: wind` cannot start from `strips` (`run: pattern`); it starts from: inflate"}},
+    {"ReferenceAndPrestressFromPattern",
+     inflated,
+     "{run: inflate, from: strips, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, @reference: stress_free, "
+     "@prestress: {all: 1 kN/m}}\n  strips: {run: pattern, from: form, strips_per_foil: 6}",
+     {"`reference` cannot stand beside a start from a pattern stage: the flat strips are the reference; leave it out",
+      "`prestress` cannot stand beside a start from a pattern stage: the flat strips are the reference"}},
+    {"PatternOfNothing",
      "  gust:",
-     "  strips: {run: @pattern, from: form, strips_per_foil: 6}\n  gust:",
-     {"`run: pattern` is not available yet; formfind, inflate and wind are available"}},
+     "  strips: @{run: pattern, from: form}\n  gust:",
+     {"`strips` needs at least one of: strips_per_foil, roll, curves; it has none"}},
     {"UnknownRun",
      "run: wind",
      "run: @wnid",
-     {"`run` must be one of: formfind, inflate, wind, not `wnid`; did you mean `wind`?"}},
+     {"`run` must be one of: formfind, pattern, inflate, wind, not `wnid`; did you mean `wind`?"}},
     {"InflateWithoutReference",
      inflated,
      "@{run: inflate, from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}}",
@@ -344,6 +392,156 @@ const Bad cases[] = {
      "thickness: @250 kPa}\n    - {name: middle, material: @etff, @colour: red, thickness: @-1 mm}",
      {"has a unit of another kind", "there is no material `etff`", "unknown key `colour`", "must be positive"}},
 };
+
+TEST(BadPolygonMesh, IsToldWhatIsAllowed) {
+  const std::string polygon =
+      replaced(example, rectangle, "{shape: polygon, points: [[0 m, 0 m], [2 m, 0 m], [2 m, 2 m], [0 m, 1 m]]}");
+  const Folder folder;
+  const auto message = [&](const char* keys) {
+    const ReadResult result = read_workflow(folder.write("w.yaml", replaced(polygon, mesh, keys)));
+    return result.problems.size() == 1 ? result.problems[0].message : "no problem, or several";
+  };
+  EXPECT_EQ(message("mesh: {size: 0.15 m, pattern: structured}"),
+            "a polygon has no structured pattern; allowed: unstructured");
+  EXPECT_EQ(message("mesh: {divisions: [6, 4]}"), "a polygon has one number of `divisions`, along its longest side");
+}
+
+// The keys of a pattern stage of the example, and the messages.
+struct BadPatternKeys {
+  const char* claim;
+  const char* keys;
+  std::vector<const char*> messages;
+};
+
+const BadPatternKeys pattern_cases[] = {
+    {"UnknownKey",
+     "@strips_per_fol: 6, roll: {width: 1.5 m, weld: 12 mm, selvedge: 10 mm}",
+     {"unknown key `strips_per_fol` in `strips`; did you mean `strips_per_foil`?"}},
+    {"OneStrip", "strips_per_foil: @1", {"`strips_per_foil` must be at least 2, not 1"}},
+    {"NegativeStrips", "strips_per_foil: @-3", {"`strips_per_foil` must be at least 2, not -3"}},
+    {"HalfAStrip", "strips_per_foil: @2.5", {"`strips_per_foil` must be a whole number, not `2.5`"}},
+    {"RollWithoutSelvedge",
+     "roll: @{width: 1.5 m, weld: 12 mm}",
+     {"`roll` lacks the key `selvedge`: not used along both edges (a length with its unit)"}},
+    {"RollWithoutWeld", "roll: @{width: 1.5 m, selvedge: 1 cm}", {"`roll` lacks the key `weld`"}},
+    {"RollWithoutWidth", "roll: @{weld: 12 mm, selvedge: 1 cm}", {"`roll` lacks the key `width`"}},
+    {"RollOfNoWidth", "roll: {width: @0 m, weld: 12 mm, selvedge: 1 cm}", {"`width` must be positive, not 0 m"}},
+    {"NegativeWeld",
+     "roll: {width: 1.5 m, weld: @-12 mm, selvedge: 1 cm}",
+     {"`weld` must be at least 0 m, not -12 mm"}},
+    {"NegativeSelvedge",
+     "roll: {width: 1.5 m, weld: 12 mm, selvedge: @-1 cm}",
+     {"`selvedge` must be at least 0 m, not -1 cm"}},
+    {"RollEatenUp",
+     "roll: @{width: 1 m, weld: 10 mm, selvedge: 495 mm}",
+     {"the `weld` and two times the `selvedge` (1 m) leave nothing of the `width` 1 m"}},
+    {"StripsAndCurves",
+     "strips_per_foil: 6, curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}",
+     {"`strips` needs at most one of: strips_per_foil, curves; it has 2"}},
+    {"CurvesOfAnUnknownFoil",
+     "curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]], @uper: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}",
+     {"there is no foil `uper`; did you mean `upper`?"}},
+    {"CurvesOfNoFoil", "curves: @{}", {"`curves` is empty; name a foil, or use `all`"}},
+    {"NoCurve", "curves: {all: @[]}", {"`all` must have at least 1 entries, not 0"}},
+    {"CurveOfOnePoint", "curves: {all: [@[[0 m, -1.5 m]]]}", {"entry 1 of `all` must have at least 2 entries, not 1"}},
+    {"PointInSpace", "curves: {all: [[@[0 m, 1 m, 2 m], [1 m, 1 m]]]}", {"entry 1 of `0` must have 2 entries, not 3"}},
+    {"PointWithoutUnit", "curves: {all: [[[@0, 1 m], [1 m, 1 m]]]}", {"`0` has no unit; expected a length"}},
+    {"CurvesLackAFoilToBeCut",
+     "foils: [upper, lower], curves: @{upper: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}",
+     {"`curves` says nothing about the foil `lower` of `foils`; name it, or use `all`"}},
+    {"CurvesOfAFoilNotToBeCut",
+     "foils: [lower], curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]], @upper: [[[0 m, -1 m], [0 m, 1 m]]]}",
+     {"`foils` does not name `upper`, so its curves have no effect; foils to be cut: lower"}},
+    {"LinesBesideCurves",
+     "curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}, @lines: straight, @direction: auto, @chosen_by: waste",
+     {"`lines` has no effect beside `curves`, which are the seams themselves; leave it out",
+      "`direction` has no effect beside `curves`", "`chosen_by` has no effect beside `curves`"}},
+    {"UnknownLines",
+     "strips_per_foil: 6, lines: @geodetic",
+     {"`lines` must be one of: geodesic, straight, not `geodetic`; did you mean `geodesic`?"}},
+    {"UnknownDirection",
+     "strips_per_foil: 6, direction: @atuo",
+     {"`direction` must be one of: auto or an angle with its unit, not `atuo`; did you mean `auto`?"}},
+    {"DirectionWithoutUnit",
+     "strips_per_foil: 6, direction: @30",
+     {"`direction`: `30` has no unit; expected an angle such as `30 deg`"}},
+    {"DirectionOfAnotherKind",
+     "strips_per_foil: 6, direction: @30 m",
+     {"`30 m` has a unit of another kind; expected an angle"}},
+    {"DirectionAsAVector",
+     "strips_per_foil: 6, direction: @[1, 0]",
+     {"`direction` must be one of: auto or an angle with its unit, not a list"}},
+    {"ChosenByBesideADirection",
+     "strips_per_foil: 6, direction: 30 deg, @chosen_by: waste",
+     {"`chosen_by` has no effect beside a given `direction`: it chooses among directions; leave it out"}},
+    {"UnknownChoice",
+     "strips_per_foil: 6, chosen_by: @wast",
+     {"`chosen_by` must be one of: distortion, waste, not `wast`; did you mean `waste`?"}},
+    {"UnknownCompensation",
+     "strips_per_foil: 6, compensation: @elastisch",
+     {"`compensation` must be one of: none, elastic, not `elastisch`; did you mean `elastic`?"}},
+    {"HalfACompensation",
+     "strips_per_foil: 6, compensation: @{warp: 0.3 %}",
+     {"`compensation` lacks the key `weft`: across the roll (a ratio with its unit)"}},
+    {"CompensationWithoutUnit",
+     "strips_per_foil: 6, compensation: {warp: @0.3, weft: 0.2 %}",
+     {"`warp`: `0.3` has no unit; expected a ratio such as `0.3 %`"}},
+    {"NegativeCompensation",
+     "strips_per_foil: 6, compensation: {warp: 0.3 %, weft: @-0.2 %}",
+     {"`weft` must be at least 0 % and below 50 %, not -0.2 %"}},
+    {"CompensationOfHalfTheFoil",
+     "strips_per_foil: 6, compensation: {warp: @50 %, weft: 0.2 %}",
+     {"`warp` must be at least 0 % and below 50 %, not 50 %"}},
+    {"CreepWithoutCompensation",
+     "strips_per_foil: 6, @creep: 0.1 %",
+     {"`creep` is for `compensation: elastic`, to which it is added; leave it out"}},
+    {"CreepBesideAGivenCompensation",
+     "strips_per_foil: 6, compensation: {warp: 0.3 %, weft: 0.2 %}, @creep: 0.1 %",
+     {"`creep` is for `compensation: elastic`"}},
+    {"CreepOfHalfTheFoil",
+     "strips_per_foil: 6, compensation: elastic, creep: @51 %",
+     {"`creep` must be at least 0 % and below 50 %, not 51 %"}},
+    {"DecompensationOfNothing",
+     "strips_per_foil: 6, @decompensation: 0.3 m",
+     {"`decompensation` is for `compensation: elastic` or {warp: ..., weft: ...}, which it lets fade in; leave it"}},
+    {"NegativeDecompensation",
+     "strips_per_foil: 6, compensation: elastic, decompensation: @-0.3 m",
+     {"`decompensation` must be at least 0 m, not -0.3 m"}},
+    {"UnknownFoilToBeCut",
+     "strips_per_foil: 6, foils: [upper, @lwoer]",
+     {"there is no foil `lwoer`; did you mean `lower`?; foils: upper, middle, lower"}},
+    {"FoilToBeCutTwice",
+     "strips_per_foil: 6, foils: [upper, lower, @upper]",
+     {"the foil `upper` stands here a second time"}},
+    {"NoFoilToBeCut", "strips_per_foil: 6, foils: @[]", {"`foils` must have at least 1 entries, not 0"}},
+    {"UnknownAllowance",
+     "strips_per_foil: 6, allowance: {@clmap: 30 mm}",
+     {"unknown key `clmap` in `allowance`; did you mean `clamp`?; known: clamp, notches"}},
+    {"NegativeAllowance",
+     "strips_per_foil: 6, allowance: {clamp: @-30 mm}",
+     {"`clamp` must be at least 0 m, not -30 mm"}},
+    {"NotchesWithoutDistance",
+     "strips_per_foil: 6, allowance: {notches: @0 m}",
+     {"`notches` must be positive, not 0 m"}},
+    {"Control", "strips_per_foil: 6, @contact: stop", {"unknown key `contact` in `strips`"}},
+};
+
+std::ostream& operator<<(std::ostream& out, const BadPatternKeys& bad) {
+  return out << bad.claim;
+}
+
+class BadPattern : public testing::TestWithParam<BadPatternKeys> {};
+
+TEST_P(BadPattern, IsToldWhatAndWhere) {
+  const BadPatternKeys& bad = GetParam();
+  const std::string stage = std::string("{run: pattern, from: form, ") + bad.keys + "}";
+  const bool is_about_the_stage = std::string(bad.keys).find('@') == std::string::npos;
+  expect_messages(
+      "  gust:", "  strips: " + std::string(is_about_the_stage ? "@" : "") + stage + "\n  gust:", bad.messages);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, BadPattern, testing::ValuesIn(pattern_cases),
+                         [](const auto& used) { return std::string(used.param.claim); });
 
 INSTANTIATE_TEST_SUITE_P(Cases, BadWorkflow, testing::ValuesIn(cases),
                          [](const auto& used) { return std::string(used.param.claim); });

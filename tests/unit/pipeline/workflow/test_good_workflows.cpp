@@ -91,6 +91,144 @@ TEST(GoodWorkflow, DefaultsAreThoseOfTheContract) {
   EXPECT_EQ(gust.loads.at(0).factor, 1);
 }
 
+// The example with a pattern stage of these keys.
+std::string with_pattern(const std::string& keys) {
+  return replaced(example, "  gust:", "  strips: {run: pattern, from: form, " + keys + "}\n  gust:");
+}
+
+PatternSettings pattern_of(const std::string& keys) {
+  const Workflow workflow = read_good(with_pattern(keys));
+  return std::get<PatternSettings>(workflow.stages.at(3).settings);
+}
+
+TEST(GoodWorkflow, FromFormOverStripsToWindIsTheContractsExample) {
+  const std::string file = std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml";
+  const Workflow workflow = read_good("pneuma: 1\nname: Single-chamber cushion, 6 m x 3 m\nmaterials: " + file + R"(
+site: {ambient_pressure: 101325 Pa, temperature: 23 degC, up: [0, 0, 1], gravity: on}
+cushion:
+  plan: {shape: rectangle, length: 6 m, width: 3 m}
+  edges: {all: clamped}
+  foils:
+    - {name: upper, material: etfe_elastic, thickness: 250 um}
+    - {name: lower, material: etfe_elastic, thickness: 250 um}
+  chambers:
+    - {name: main, between: [upper, lower]}
+mesh: {element: T6, size: 0.15 m}
+stages:
+  form:     {run: formfind, from: mesh, gauge_pressure: {main: 400 Pa}, prestress: {all: 0.89 kN/m}}
+  strips:   {run: pattern, from: form, strips_per_foil: 6, compensation: elastic}
+  inflated: {run: inflate, from: strips, gauge_pressure: {main: 400 Pa}}
+  gust:
+    run: wind
+    from: inflated
+    gas: {main: {law: closed, kappa: 1.4}}
+    loads: [{name: suction, foil: upper, wind: -0.6 kPa}]
+  slow:
+    run: wind
+    from: inflated
+    gas: {main: {law: regulated}}
+    loads: [{name: suction, foil: upper, wind: -0.6 kPa}]
+)");
+  ASSERT_EQ(workflow.stages.size(), 6U);
+  EXPECT_EQ(workflow.stages[2].run, "pattern");
+  const auto& strips = std::get<PatternSettings>(workflow.stages[2].settings);
+  EXPECT_EQ(strips.strips_per_foil, 6);
+  EXPECT_EQ(strips.compensation.kind, Compensation::Kind::elastic);
+  EXPECT_EQ(workflow.stages[3].from_run, "pattern");
+  EXPECT_FALSE(std::get<InflateSettings>(workflow.stages[3].settings).reference);
+}
+
+TEST(GoodWorkflow, PatternDefaultsAreThoseOfTheContract) {
+  const PatternSettings pattern = pattern_of("strips_per_foil: 6");
+  EXPECT_EQ(pattern.strips_per_foil, 6);
+  EXPECT_FALSE(pattern.roll_given);
+  EXPECT_TRUE(pattern.curves.empty());
+  EXPECT_EQ(pattern.lines, CuttingLines::geodesic);
+  EXPECT_FALSE(pattern.direction);
+  EXPECT_EQ(pattern.chosen_by, ChosenBy::distortion);
+  EXPECT_EQ(pattern.compensation.kind, Compensation::Kind::none);
+  EXPECT_EQ(pattern.compensation.creep, 0);
+  EXPECT_EQ(pattern.decompensation, 0);
+  EXPECT_TRUE(pattern.foils.empty());
+  EXPECT_EQ(pattern.clamp_allowance, 0.03);
+  EXPECT_EQ(pattern.notch_spacing, 0.5);
+}
+
+TEST(GoodWorkflow, PatternIsDecidedByANumberTheRollOrCurves) {
+  const PatternSettings roll = pattern_of("roll: {width: 1.6 m, weld: 12 mm, selvedge: 1 cm}, chosen_by: waste");
+  EXPECT_FALSE(roll.strips_per_foil);
+  EXPECT_TRUE(roll.roll_given);
+  EXPECT_EQ(roll.roll.width, 1.6);
+  EXPECT_EQ(roll.roll.weld, 0.012);
+  EXPECT_EQ(roll.roll.selvedge, 0.01);
+  EXPECT_EQ(roll.chosen_by, ChosenBy::waste);
+
+  const PatternSettings both = pattern_of("strips_per_foil: 4, roll: {width: 1.6 m, weld: 12 mm, selvedge: 1 cm}, "
+                                          "lines: straight, direction: 90 deg, foils: [lower, upper]");
+  EXPECT_EQ(both.strips_per_foil, 4);
+  EXPECT_TRUE(both.roll_given);
+  EXPECT_EQ(both.lines, CuttingLines::straight);
+  EXPECT_DOUBLE_EQ(both.direction.value(), std::acos(0.0));
+  EXPECT_THAT(both.foils, ElementsAre("lower", "upper"));
+
+  const PatternSettings curves = pattern_of("foils: [upper, lower], curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]], "
+                                            "lower: [[[-1 m, -1.5 m], [-1 m, 1.5 m]], [[1 m, -1.5 m], [110 cm, 0 m], "
+                                            "[1 m, 1.5 m]]]}");
+  ASSERT_EQ(curves.curves.size(), 2U);
+  EXPECT_EQ(curves.curves.at("upper").size(), 1U);
+  EXPECT_EQ(curves.curves.at("upper")[0][0], base::Vec2(0, -1.5));
+  ASSERT_EQ(curves.curves.at("lower").size(), 2U);
+  EXPECT_EQ(curves.curves.at("lower")[1].size(), 3U);
+}
+
+TEST(GoodWorkflow, PatternIsCompensatedByTheFormOrAsGiven) {
+  const PatternSettings elastic =
+      pattern_of("strips_per_foil: 6, compensation: elastic, creep: 0.1 %, decompensation: 30 cm");
+  EXPECT_EQ(elastic.compensation.kind, Compensation::Kind::elastic);
+  EXPECT_DOUBLE_EQ(elastic.compensation.creep, 0.001);
+  EXPECT_DOUBLE_EQ(elastic.decompensation, 0.3);
+  const PatternSettings given = pattern_of("strips_per_foil: 6, compensation: {warp: 0.3 %, weft: 0.2 %}, "
+                                           "decompensation: 30 cm, allowance: {clamp: 4 cm, notches: 25 cm}");
+  EXPECT_EQ(given.compensation.kind, Compensation::Kind::given);
+  EXPECT_DOUBLE_EQ(given.compensation.warp, 0.003);
+  EXPECT_DOUBLE_EQ(given.compensation.weft, 0.002);
+  EXPECT_DOUBLE_EQ(given.decompensation, 0.3);
+  EXPECT_DOUBLE_EQ(given.clamp_allowance, 0.04);
+  EXPECT_DOUBLE_EQ(given.notch_spacing, 0.25);
+}
+
+TEST(GoodWorkflow, ImplausiblePatternsAreWarnings) {
+  const auto warnings = [](const std::string& keys) { return warnings_of(with_pattern(keys)); };
+  EXPECT_EQ(warnings("strips_per_foil: 51"),
+            "19:55: `strips_per_foil` 51 is unusual (usually 2 to 50); is it meant?\n");
+  EXPECT_THAT(warnings("roll: {width: 0.4 m, weld: 4 mm, selvedge: 0 m}"),
+              testing::AllOf(HasSubstr("`width` 0.4 m is unusual (rolls are 0.5 to 3 m wide)"),
+                             HasSubstr("`weld` 4 mm is unusual (usually 5 to 30 mm)")));
+  EXPECT_THAT(warnings("roll: {width: 3.1 m, weld: 31 mm, selvedge: 0 m}"),
+              testing::AllOf(HasSubstr("`width` 3.1 m is unusual"), HasSubstr("`weld` 31 mm is unusual")));
+  EXPECT_EQ(warnings("strips_per_foil: 50, roll: {width: 0.5 m, weld: 5 mm, selvedge: 0 m}"), "");
+  EXPECT_EQ(warnings("strips_per_foil: 2, roll: {width: 3 m, weld: 30 mm, selvedge: 0 m}"), "");
+  EXPECT_THAT(warnings("strips_per_foil: 6, compensation: {warp: 2.1 %, weft: 2 %}"),
+              HasSubstr("`warp` 2.1 % is unusual (usually up to 2 %)"));
+  EXPECT_THAT(warnings("strips_per_foil: 6, compensation: elastic, creep: 3 %"), HasSubstr("`creep` 3 % is unusual"));
+  EXPECT_THAT(warnings("strips_per_foil: 6, compensation: elastic, decompensation: 3 m"),
+              HasSubstr("`decompensation` 3 m is unusual"));
+  EXPECT_THAT(warnings("strips_per_foil: 6, allowance: {clamp: 1 m, notches: 1 mm}"),
+              testing::AllOf(HasSubstr("`clamp` 1 m is unusual"), HasSubstr("`notches` 1 mm is unusual")));
+}
+
+TEST(GoodWorkflow, PolygonHasItsPointsAsTheyStandAndAnEdgeASide) {
+  const Workflow workflow = read_good(replaced(
+      replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}",
+               "{shape: polygon, points: [[0 m, 0 m], [0 m, 3 m], [100 cm, 3 m], [1 m, 1 m], [4 m, 1 m], [4 m, 0 m]]}"),
+      "size: 0.15 m", "divisions: 12, pattern: unstructured"));
+  const auto& polygon = std::get<geometry::Polygon>(workflow.cushion.plan);
+  ASSERT_EQ(polygon.points.size(), 6U);
+  EXPECT_EQ(polygon.points[2], base::Vec2(1, 3));
+  EXPECT_EQ(workflow.cushion.edges.size(), 6U);
+  EXPECT_EQ(workflow.cushion.edges.at("e6"), "clamped");
+}
+
 TEST(GoodWorkflow, ThesisGasLawIsAnAmbientPressureOfZero) {
   const Workflow workflow =
       read_good(replaced(example, "cushion:\n", "site: {ambient_pressure: 0 Pa, gravity: off}\ncushion:\n"));
@@ -152,12 +290,19 @@ TEST(GoodWorkflow, ImplausibleValuesAreWarnings) {
             "15:27: `size` 0.00015 m makes about 8e+08 elements a foil; is it meant?\n");
 }
 
+constexpr const char* inflated =
+    "{run: inflate, from: form, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}, reference: prestressed}";
+constexpr const char* inflated_strips = "{run: inflate, from: strips, gauge_pressure: {top: 400 Pa, bottom: 300 Pa}}";
+
 // Every kind of setting that a stage can have.
 std::vector<std::string> varied() {
   return {
       example,
       replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}", "{shape: circle, radius: 123.4 cm}"),
       replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}", "{shape: triangle, side: 3.3 m}"),
+      replaced(example, "{shape: rectangle, length: 6 m, width: 3 m}",
+               "{shape: polygon, points: [[0 m, 0 m], [0 m, 33 dm], [123.4 cm, 3.3 m], [1234 mm, 1 m], [6 m, 1 m], [6 "
+               "m, 0 m]]}"),
       replaced(example, "{element: T6, size: 0.15 m}",
                "{element: Q9, divisions: [12, 7], stress_rule: reduced, pattern: structured}"),
       replaced(example, "{element: T6, size: 0.15 m}", "{element: T3, divisions: 9, pattern: unstructured}"),
@@ -177,6 +322,16 @@ std::vector<std::string> varied() {
                "thickness: 250 um", "thickness: 250 um, warp: 33 deg"),
       replaced(replaced(example, "  chambers:\n", "  base: rigid\n  chambers:\n"), "between: [middle, lower]",
                "between: [base, lower], dead_volume: 12 l"),
+      replaced(with_pattern("strips_per_foil: 6"), inflated, inflated_strips),
+      with_pattern("roll: {width: 1.55 m, weld: 12 mm, selvedge: 1.3 cm}, lines: straight, chosen_by: waste, "
+                   "compensation: {warp: 0.37 %, weft: 0.21 %}, decompensation: 0.33 m, "
+                   "allowance: {clamp: 41 mm, notches: 0.37 m}, options: {tolerance: 1e-9}"),
+      with_pattern("strips_per_foil: 3, direction: 33 deg, compensation: elastic, creep: 0.07 %, "
+                   "foils: [lower, upper]"),
+      with_pattern(
+          "roll: {width: 1.55 m, weld: 12 mm, selvedge: 1.3 cm}, foils: [lower, upper], compensation: elastic, "
+          "curves: {all: [[[0 m, -1.5 m], [0.1 m, 0.3 m], [0 m, 1.5 m]]], upper: [[[-1.1 m, -1.5 m], [-1.1 m, "
+          "1.5 m]], [[1 m, -150 cm], [12 dm, 0.1 m], [1 m, 1.5 m]], [[2 m, -150 cm], [2 m, 1.5 m]]]}"),
   };
 }
 
@@ -206,6 +361,20 @@ TEST(StageFile, CarriesThePlaceOfEachValue) {
   EXPECT_THAT(text, HasSubstr("cushion.foils.0.thickness: \"w.yaml:9:48\""));
   EXPECT_THAT(text, HasSubstr("stages.form.prestress.middle: \"w.yaml:17:101\""));
   EXPECT_THAT(text, testing::Not(HasSubstr("site.temperature: \""))); // a default
+}
+
+TEST(StageFile, OfAPatternHasEveryValueThatHasAnEffect) {
+  const Workflow workflow = read_good(with_pattern("strips_per_foil: 6"));
+  EXPECT_THAT(stage_yaml(workflow, workflow.stages[3]),
+              HasSubstr("  strips:\n    run: pattern\n    from: form\n    from_run: formfind\n    strips_per_foil: 6\n"
+                        "    lines: geodesic\n    direction: auto\n    chosen_by: distortion\n    compensation: none\n"
+                        "    allowance: {clamp: 0.03 m, notches: 0.5 m}\n    options: {}\n"));
+}
+
+TEST(StageFile, CarriesThePlacesOfCurvesOfAllFoils) {
+  const Workflow workflow = read_good(with_pattern("curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}"));
+  EXPECT_THAT(stage_yaml(workflow, workflow.stages[3]),
+              HasSubstr("stages.strips.curves.lower.0.1.0: \"w.yaml:19:70\""));
 }
 
 TEST(StageFile, WrongValueIsQuotedAtThePlaceInTheUsersFile) {

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/pattern/flat_foil.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/flattening/parameterization.h"
+#include "geometry/flattening/rotation.h"
+#include "geometry/strips/strip_surface.h"
+#include "solver/material/prestress.h"
+
+namespace pneuma::stages::pattern {
+
+namespace {
+
+namespace flattening = solver::flattening;
+namespace strips = geometry::strips;
+using base::Mat2;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Every strip by itself: conformal, laid over its plan turned so that the roll direction is x.
+std::vector<Vec2> conformal_start(const flattening::FlatNodes& nodes, const flattening::Problem& problem,
+                                  std::span<const Index> strip_of_element, Index count, double direction) {
+  const Eigen::Rotation2Dd turn(-direction);
+  std::vector<Vec2> start(nodes.node.size());
+  for (Index strip = 0; strip < count; ++strip) {
+    const strips::StripSurface piece =
+        strips::strip_surface(problem.element, nodes.connectivity, strip_of_element, strip, problem.form);
+    std::vector<Vec2> plan;
+    for (const Vec3& x : piece.surface.points) plan.emplace_back(turn * x.head<2>());
+    const std::vector<Vec2> flat =
+        geometry::flattening::laid_over(geometry::flattening::conformal(piece.surface), plan);
+    for (std::size_t i = 0; i < flat.size(); ++i) start[at(piece.nodes[i])] = flat[i];
+  }
+  return start;
+}
+
+using FlatOf = std::map<std::pair<Index, Index>, Index>; // (strip, node of the mesh) -> flat node, of boundary nodes
+
+struct Segment {
+  Vec2 from, to;
+};
+
+// The clamped edges of each strip in the plane.
+std::vector<std::vector<Segment>> clamped_segments(const FlatFoil& foil, std::span<const Vec2> points) {
+  std::vector<std::vector<Segment>> all(foil.sides.size());
+  for (std::size_t s = 0; s < foil.sides.size(); ++s) {
+    for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
+      if (foil.sides[s][k].edge < 0) continue;
+      const std::vector<Index>& nodes = foil.flat_sides[s][k];
+      for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+        all[s].push_back({points[at(nodes[i])], points[at(nodes[i + 1])]});
+      }
+    }
+  }
+  return all;
+}
+
+double distance(const Segment& segment, const Vec2& x) {
+  const Vec2 along = segment.to - segment.from;
+  const double t = std::clamp((x - segment.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (x - segment.from - t * along).norm();
+}
+
+// The wanted stretch at every stress point; along clamped edges its part along the edge fades out, since the frame
+// does not stretch.
+std::vector<double> stretch_field(const FlatFoil& foil, const flattening::Problem& problem,
+                                  std::span<const Vec2> points, std::span<const Index> strip_of_element,
+                                  const Wanted& wanted) {
+  const std::size_t per_element = geometry::stress_rule(problem.element, problem.rule).size();
+  std::vector<double> field;
+  field.reserve(strip_of_element.size() * per_element * 3);
+  const bool fades = wanted.decompensation > 0;
+  const auto segments = fades ? clamped_segments(foil, points) : std::vector<std::vector<Segment>>();
+  const auto n = at(geometry::nodes_per_element(problem.element));
+  for (std::size_t e = 0; e < strip_of_element.size(); ++e) {
+    Vec3 g = wanted.stretch;
+    if (fades) {
+      Vec2 centre = Vec2::Zero();
+      for (std::size_t a = 0; a < n; ++a) centre += points[at(problem.nodes->connectivity[e * n + a])];
+      centre /= static_cast<double>(n);
+      double nearest = std::numeric_limits<double>::infinity();
+      Vec2 t = Vec2::UnitX();
+      for (const Segment& segment : segments[at(strip_of_element[e])]) {
+        const double d = distance(segment, centre);
+        if (d >= nearest) continue;
+        nearest = d;
+        t = (segment.to - segment.from).normalized();
+      }
+      const double part = std::max(0.0, 1 - nearest / wanted.decompensation);
+      const double along = (g[0] - 1) * t.x() * t.x() + (g[1] - 1) * t.y() * t.y() + 2 * g[2] * t.x() * t.y();
+      g -= part * along * Vec3(t.x() * t.x(), t.y() * t.y(), t.x() * t.y());
+    }
+    for (std::size_t k = 0; k < per_element; ++k) field.insert(field.end(), {g[0], g[1], g[2]});
+  }
+  return field;
+}
+
+double length_of(std::span<const Index> nodes, std::span<const Vec2> points) {
+  double length = 0;
+  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) length += (points[at(nodes[k + 1])] - points[at(nodes[k])]).norm();
+  return length;
+}
+
+std::vector<Index> flat_of(const FlatOf& flat, Index strip, std::span<const Index> nodes) {
+  std::vector<Index> result;
+  for (const Index node : nodes) result.push_back(flat.at({strip, node}));
+  return result;
+}
+
+} // namespace
+
+std::optional<ElasticStretch> elastic_stretch(const solver::material::Law& law, double thickness, double prestress) {
+  const auto g = solver::material::predeformation(law, thickness, Vec3(prestress, prestress, 0));
+  if (!g) return std::nullopt;
+  solver::material::Batch batch;
+  batch.count = 1;
+  Mat2 stretch;
+  stretch << (*g)[0], (*g)[2], (*g)[2], (*g)[1];
+  const Mat2 c = stretch * stretch;
+  batch.strain[0] = Vec3(0.5 * (c(0, 0) - 1), 0.5 * (c(1, 1) - 1), c(0, 1));
+  std::vector<double> history(at(solver::material::history_components(law)), 0.0);
+  std::vector<double> unused = history;
+  batch.old_history = history.data();
+  batch.new_history = unused.data();
+  if (solver::material::evaluate(law, batch) >= 0) return std::nullopt;
+  const Mat3 d = batch.tangent[0];
+  return ElasticStretch{*g, d.transpose() * Vec3(1, 1, 2).asDiagonal() * d};
+}
+
+FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressRule rule, const strips::CutFoil& cut,
+                      const Wanted& wanted) {
+  const geometry::Block& b = mesh.blocks[at(block)];
+  FlatFoil foil;
+  foil.nodes = flattening::flat_nodes(mesh.element, b.connectivity, cut.strip_of_element, cut.strips);
+  FlatOf flat;
+  for (std::size_t i = 0; i < foil.nodes.node.size(); ++i) {
+    flat[{foil.nodes.strip[i], foil.nodes.node[i]}] = static_cast<Index>(i);
+  }
+  std::vector<std::vector<Index>> seam_nodes;
+  for (const strips::Seam& seam : cut.seams) seam_nodes.push_back(seam.nodes);
+  for (Index strip = 0; strip < cut.strips; ++strip) {
+    foil.sides.push_back(strips::sides_of(mesh, b, cut.strip_of_element, strip, seam_nodes));
+    auto& flat_sides = foil.flat_sides.emplace_back();
+    for (const strips::StripSide& side : foil.sides.back()) flat_sides.push_back(flat_of(flat, strip, side.nodes));
+  }
+
+  flattening::Problem problem;
+  problem.element = mesh.element;
+  problem.rule = rule;
+  problem.nodes = &foil.nodes;
+  for (const Index node : foil.nodes.node) problem.form.push_back(mesh.nodes[at(node)]);
+  problem.weight = wanted.weight;
+  const std::vector<Vec2> start =
+      conformal_start(foil.nodes, problem, cut.strip_of_element, cut.strips, wanted.direction);
+  problem.stretch = stretch_field(foil, problem, start, cut.strip_of_element, wanted);
+  std::vector<std::pair<std::vector<Index>, std::vector<Index>>> mating;
+  for (const strips::Seam& seam : cut.seams) {
+    mating.emplace_back(flat_of(flat, seam.left, seam.nodes), flat_of(flat, seam.right, seam.nodes));
+    const auto& [left, right] = mating.back();
+    for (std::size_t k = 0; wanted.tied && k + 1 < left.size(); ++k) {
+      problem.ties.push_back({{left[k], left[k + 1]}, {right[k], right[k + 1]}});
+    }
+  }
+  if (wanted.decompensation > 0) {
+    for (std::size_t s = 0; s < foil.sides.size(); ++s) {
+      for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
+        if (foil.sides[s][k].edge < 0) continue;
+        const std::vector<Index>& nodes = foil.flat_sides[s][k];
+        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+          const double length = (problem.form[at(nodes[i + 1])] - problem.form[at(nodes[i])]).norm();
+          problem.ties.push_back({{nodes[i], nodes[i + 1]}, {-1, -1}, length});
+        }
+      }
+    }
+  }
+  foil.flat = flattening::flatten(problem, start);
+  foil.stretches = flattening::stretches(problem, foil.flat.points);
+  for (const auto& [left, right] : mating) {
+    foil.seam_lengths.emplace_back(length_of(left, foil.flat.points), length_of(right, foil.flat.points));
+  }
+  return foil;
+}
+
+std::vector<double> corner_coordinates(const FlatFoil& foil) {
+  std::vector<double> coordinates;
+  coordinates.reserve(foil.nodes.connectivity.size() * 3);
+  for (const Index node : foil.nodes.connectivity) {
+    const Vec2& x = foil.flat.points[at(node)];
+    coordinates.insert(coordinates.end(), {x.x(), x.y(), 0.0});
+  }
+  return coordinates;
+}
+
+std::string strip_name(const std::string& foil, Index strip) {
+  return fmt::format("{}-{}", foil, strip + 1);
+}
+
+std::string seam_name(Index seam) {
+  return fmt::format("S{}", seam + 1);
+}
+
+std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, const geometry::Mesh& mesh, Index block,
+                                                       const strips::CutFoil& cut) {
+  const std::string& name = mesh.blocks[at(block)].name;
+  std::vector<geometry::fabrication::FlatStrip> result;
+  for (std::size_t s = 0; s < foil.sides.size(); ++s) {
+    geometry::fabrication::FlatStrip strip;
+    strip.name = strip_name(name, static_cast<Index>(s));
+    for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
+      const strips::StripSide& side = foil.sides[s][k];
+      geometry::fabrication::Side out;
+      if (side.seam >= 0) {
+        const strips::Seam& seam = cut.seams[at(side.seam)];
+        out.name = seam_name(side.seam);
+        out.seam = true;
+        out.mate = strip_name(name, seam.left == static_cast<Index>(s) ? seam.right : seam.left);
+        out.reversed = side.reversed;
+        const auto& [left, right] = foil.seam_lengths[at(side.seam)];
+        out.mate_length = seam.left == static_cast<Index>(s) ? right : left;
+      } else if (side.edge >= 0) {
+        out.name = mesh.edges[at(side.edge)].name;
+      }
+      for (const Index node : foil.flat_sides[s][k]) out.points.push_back(foil.flat.points[at(node)]);
+      strip.sides.push_back(std::move(out));
+    }
+    result.push_back(std::move(strip));
+  }
+  return result;
+}
+
+} // namespace pneuma::stages::pattern

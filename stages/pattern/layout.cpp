@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/pattern/layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/rim.h"
+#include "stages/pattern/flat_foil.h"
+
+namespace pneuma::stages::pattern {
+
+namespace {
+
+namespace fabrication = geometry::fabrication;
+namespace strips = geometry::strips;
+namespace workflow = pipeline::workflow;
+using strips::CuttingLine;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+Vec2 along(double direction) {
+  return {std::cos(direction), std::sin(direction)};
+}
+Vec2 across(double direction) {
+  return {-std::sin(direction), std::cos(direction)};
+}
+
+// Extent of the plan across a direction.
+std::pair<double, double> extent_across(const geometry::Plan& plan, double direction) {
+  const double around = geometry::perimeter(plan);
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  const auto take = [&](double position) {
+    const double o = across(direction).dot(geometry::rim_point(plan, position));
+    low = std::min(low, o);
+    high = std::max(high, o);
+  };
+  for (const double corner : geometry::rim_corners(plan)) take(corner);
+  for (int k = 0; k < 720; ++k) take(around * k / 720); // curved rims
+  return {low, high};
+}
+
+// What strips would come out of some lines, measured on a coarse copy.
+struct Trial {
+  std::vector<double> width; // of the cut strips, m
+  double distortion = 0;     // largest
+  double waste = 0;
+};
+
+class Planner {
+public:
+  Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil)
+      : surface_(surface), settings_(settings),
+        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing} {}
+
+  Layout given_curves() const {
+    Layout layout;
+    for (const std::vector<Vec2>& curve : settings_.curves.at(foil_)) {
+      layout.lines.push_back(strips::given_line(surface_, curve));
+    }
+    if (const std::string crossing = strips::crossing(layout.lines); !crossing.empty()) {
+      throw base::GeometryError(fmt::format("foil `{}`: {}", foil_, crossing));
+    }
+    const Vec2 chord = layout.lines.front().plan.back() - layout.lines.front().plan.front();
+    layout.direction = std::atan2(chord.y(), chord.x());
+    layout.reason = "given curves";
+    return layout;
+  }
+
+  Layout in_direction(double direction) const {
+    return settings_.strips_per_foil ? equal_strips(direction, *settings_.strips_per_foil) : fewest_strips(direction);
+  }
+
+  Layout best_direction() const {
+    std::optional<Layout> best;
+    double least = std::numeric_limits<double>::infinity();
+    std::string refusal;
+    for (const double direction : candidates()) {
+      try {
+        Layout layout = in_direction(direction);
+        const Trial trial = measure(layout.lines, direction);
+        const bool by_waste = settings_.chosen_by == workflow::ChosenBy::waste;
+        const double score = by_waste ? trial.waste : trial.distortion;
+        if (score >= least * (1 - 1e-3)) continue; // the first of equals
+        least = score;
+        layout.reason += fmt::format(", best of the edges' directions by {} ({:.2f} %)",
+                                     by_waste ? "waste" : "distortion", 100 * score);
+        best = std::move(layout);
+      } catch (const base::GeometryError& error) {
+        if (refusal.empty()) refusal = error.what();
+      }
+    }
+    if (!best) throw base::GeometryError(refusal);
+    return *best;
+  }
+
+private:
+  // Along the plan's edges and across them; x for a circle.
+  std::vector<double> candidates() const {
+    std::vector<double> found;
+    const auto add = [&](double angle) {
+      angle = std::remainder(angle, std::numbers::pi); // -90 .. 90 degrees
+      if (angle <= -std::numbers::pi / 2 + 1e-9) angle += std::numbers::pi;
+      const bool known = std::any_of(found.begin(), found.end(), [&](double other) {
+        return std::abs(std::remainder(angle - other, std::numbers::pi)) < 1 / degrees;
+      });
+      if (!known) found.push_back(angle);
+    };
+    const std::vector<double> corners = geometry::rim_corners(surface_.plan);
+    for (std::size_t k = 0; corners.size() > 2 && k < corners.size(); ++k) {
+      const Vec2 edge = geometry::rim_point(surface_.plan, corners[(k + 1) % corners.size()]) -
+                        geometry::rim_point(surface_.plan, corners[k]);
+      add(std::atan2(edge.y(), edge.x()));
+    }
+    if (found.empty()) return {0};
+    const std::size_t edges = found.size();
+    for (std::size_t k = 0; k < edges; ++k) add(found[k] + std::numbers::pi / 2);
+    return found;
+  }
+
+  CuttingLine line(double from, double to) const {
+    return settings_.lines == workflow::CuttingLines::geodesic ? strips::geodesic_line(surface_, from, to)
+                                                               : strips::straight_line(surface_, from, to);
+  }
+
+  std::vector<CuttingLine> lines_at(const std::vector<double>& offsets, double direction) const {
+    std::vector<CuttingLine> lines;
+    for (const double offset : offsets) {
+      const std::vector<double> crossings =
+          geometry::rim_crossings(surface_.plan, offset * across(direction), along(direction));
+      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) lines.push_back(line(crossings[k], crossings[k + 1]));
+    }
+    if (const std::string crossing = strips::crossing(lines); !crossing.empty()) {
+      throw base::GeometryError(
+          fmt::format("foil `{}`: {}; straight lines or fewer strips would not", foil_, crossing));
+    }
+    return lines;
+  }
+
+  Trial measure(const std::vector<CuttingLine>& lines, double direction) const {
+    const strips::Cut cut{&surface_, lines};
+    geometry::Mesh names; // the cut keeps names and element type
+    names.element = geometry::ElementType::T3;
+    names.blocks.push_back({foil_, geometry::BlockKind::foil, {}});
+    for (const std::string& name : geometry::edge_names(surface_.plan)) names.edges.push_back({name, false, {}});
+    const double area = geometry::area(surface_.plan);
+    double size = std::sqrt(area / 500);
+    // three elements across the narrowest strip, as far as the mesh itself has them
+    size = std::max(std::min(size, std::sqrt(area) / static_cast<double>(4 * (lines.size() + 1))), surface_.size);
+    const strips::CutMesh mesh = strips::cut(surface_.plan, names, {&cut, 1}, size);
+    Wanted wanted;
+    wanted.direction = direction;
+    wanted.tied = false;
+    const FlatFoil flat = flatten_foil(mesh.mesh, 0, geometry::StressRule::full, mesh.foils[0], wanted);
+    Trial trial;
+    std::vector<fabrication::CutStrip> cuts;
+    std::vector<std::string> strip_names;
+    double used = 0;
+    double net = 0;
+    for (const fabrication::FlatStrip& outline : outlines(flat, mesh.mesh, 0, mesh.foils[0])) {
+      cuts.push_back(fabrication::cut_strip(outline, allowances_));
+      strip_names.push_back(outline.name);
+      const Vec2 box = cuts.back().high - cuts.back().low;
+      trial.width.push_back(box.y());
+      used += box.x() * box.y();
+      net += cuts.back().area;
+    }
+    trial.waste = 1 - net / used;
+    for (const solver::flattening::PointStretch& s : flat.stretches) {
+      trial.distortion = std::max({trial.distortion, s.larger - 1, 1 - s.smaller});
+    }
+    return trial;
+  }
+
+  Layout equal_strips(double direction, int count) const {
+    const auto [low, high] = extent_across(surface_.plan, direction);
+    std::vector<double> offsets;
+    for (int k = 0; k <= count; ++k) offsets.push_back(low + (high - low) * k / count);
+    Layout layout{direction, {}, fmt::format("{} strips at {:.1f} degrees", count, direction * degrees)};
+    for (int round = 0;; ++round) {
+      layout.lines = lines_at({offsets.begin() + 1, offsets.end() - 1}, direction);
+      if (round == 3) break;
+      const std::vector<double> width = measure(layout.lines, direction).width;
+      if (width.size() != static_cast<std::size_t>(count)) break; // a plan with bays: strips in parts
+      const auto [least, most] = std::minmax_element(width.begin(), width.end());
+      if (*most - *least < 0.005 * *most) break;
+      offsets = balanced(offsets, width);
+    }
+    return layout;
+  }
+
+  // Offsets at which strips of these widths would be equally wide: the width summed up is taken as piecewise linear.
+  static std::vector<double> balanced(const std::vector<double>& offsets, const std::vector<double>& width) {
+    std::vector<double> sum{0};
+    for (const double w : width) sum.push_back(sum.back() + w);
+    std::vector<double> result = offsets;
+    std::size_t piece = 0;
+    for (std::size_t k = 1; k + 1 < offsets.size(); ++k) {
+      const double wanted = sum.back() * static_cast<double>(k) / static_cast<double>(width.size());
+      while (sum[piece + 1] < wanted) ++piece;
+      const double part = (wanted - sum[piece]) / width[piece];
+      result[k] = offsets[piece] + part * (offsets[piece + 1] - offsets[piece]);
+    }
+    return result;
+  }
+
+  Layout fewest_strips(double direction) const {
+    const double usable = settings_.roll.width - 2 * settings_.roll.selvedge;
+    const auto [low, high] = extent_across(surface_.plan, direction);
+    const int first = std::max(2, static_cast<int>(std::ceil((high - low) / (usable - settings_.roll.weld))));
+    double widest = 0;
+    for (int count = first; count < first + 6; ++count) {
+      Layout layout = equal_strips(direction, count);
+      const std::vector<double> width = measure(layout.lines, direction).width;
+      widest = *std::max_element(width.begin(), width.end());
+      if (widest > usable) continue;
+      layout.reason += fmt::format(", at most {:.0f} mm wide on a roll with {:.0f} mm", 1e3 * widest, 1e3 * usable);
+      return layout;
+    }
+    throw base::GeometryError(
+        fmt::format("foil `{}`: even {} strips are {:.0f} mm wide with their allowances, the roll "
+                    "has {:.0f} mm without its selvedge: take a wider roll",
+                    foil_, first + 5, 1e3 * widest, 1e3 * usable));
+  }
+
+  const strips::Surface& surface_;
+  const workflow::PatternSettings& settings_;
+  std::string foil_;
+  fabrication::Allowances allowances_;
+};
+
+} // namespace
+
+Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& settings, const std::string& foil) {
+  const Planner planner(surface, settings, foil);
+  if (settings.curves.contains(foil)) return planner.given_curves();
+  if (settings.direction) return planner.in_direction(*settings.direction);
+  return planner.best_direction();
+}
+
+} // namespace pneuma::stages::pattern

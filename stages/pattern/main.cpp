@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pneuma-pattern: from the form-found cushion to flat strips that weld up to it, and to the drawings to cut them by.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/base/log.h"
+#include "geometry/base/parallel.h"
+#include "geometry/surface.h"
+#include "pipeline/state/state_file.h"
+#include "solver/linear/cholesky.h"
+#include "stages/common/equilibrium.h"
+#include "stages/pattern/layout.h"
+#include "stages/pattern/report.h"
+
+namespace pneuma::stages::pattern {
+
+namespace {
+
+namespace strips = geometry::strips;
+namespace workflow = pipeline::workflow;
+
+// Numbers of the blocks to be cut: those named, or all foils that are not flat.
+std::vector<std::size_t> foils_to_cut(const common::Start& start, const workflow::PatternSettings& settings) {
+  const geometry::Mesh& mesh = start.state.mesh;
+  const geometry::Plane plane = geometry::edge_plane(mesh, mesh.nodes);
+  const double flat = 1e-6 * geometry::span_of(mesh.nodes);
+  std::vector<std::size_t> chosen;
+  for (std::size_t b = 0; b < start.workflow.cushion.foils.size(); ++b) {
+    const bool is_flat = geometry::deepest_point(mesh, mesh.blocks[b], mesh.nodes, plane).distance < flat;
+    const bool named =
+        std::find(settings.foils.begin(), settings.foils.end(), mesh.blocks[b].name) != settings.foils.end();
+    if (settings.foils.empty() ? !is_flat : named) chosen.push_back(b);
+  }
+  if (chosen.empty()) {
+    throw base::InputError(common::place(start.workflow, "stages." + start.stage().id + ".from") +
+                           "all foils are flat: there is nothing to cut");
+  }
+  return chosen;
+}
+
+// What the flat strips of a foil shall be.
+Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& settings, std::size_t b,
+                 double direction) {
+  const workflow::FoilSettings& foil = start.workflow.cushion.foils[b];
+  const std::vector<double>& prestress = start.state.foils[b].prestress;
+  const double tension = prestress.empty() ? 0 : prestress.front();
+  const auto elastic =
+      elastic_stretch(common::law_of(start.workflow.materials.at(foil.material)), foil.thickness, tension);
+  if (!elastic) {
+    throw base::InputError(fmt::format("{}: foil `{}` cannot carry the prestress of {} N/m that its form was found for",
+                                       to_string(foil.mark), foil.name, common::number(tension)));
+  }
+  Wanted wanted;
+  wanted.direction = direction;
+  wanted.decompensation = settings.decompensation;
+  wanted.weight = elastic->weight;
+  const workflow::Compensation& compensation = settings.compensation;
+  if (compensation.kind == workflow::Compensation::Kind::elastic) {
+    wanted.stretch = elastic->stretch / (1 - compensation.creep);
+  } else if (compensation.kind == workflow::Compensation::Kind::given) {
+    wanted.stretch = Vec3(1 / (1 - compensation.warp), 1 / (1 - compensation.weft), 0);
+  }
+  return wanted;
+}
+
+Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettings& settings,
+                       const std::vector<std::size_t>& chosen) {
+  const geometry::Mesh& mesh = start.state.mesh;
+  std::vector<strips::Surface> surfaces;
+  for (const geometry::Block& block : mesh.blocks) {
+    surfaces.push_back(strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes));
+  }
+  std::vector<strips::Cut> cuts;
+  for (const strips::Surface& surface : surfaces) cuts.push_back({&surface, {}});
+  Welded welded;
+  welded.wanted.resize(mesh.blocks.size());
+  welded.flat.resize(mesh.blocks.size());
+  for (const std::size_t b : chosen) {
+    const Layout layout = lay_out(surfaces[b], settings, mesh.blocks[b].name);
+    base::say(fmt::format("{}: {}", mesh.blocks[b].name, layout.reason));
+    cuts[b].lines = layout.lines;
+    welded.wanted[b] = wanted_of(start, settings, b, layout.direction);
+  }
+  strips::CutMesh cut = strips::cut(start.workflow.cushion.plan, mesh, cuts, surfaces.front().size);
+  welded.state = transferred(start, cut);
+  welded.cuts = std::move(cut.foils);
+  base::parallel_chunks(start.arguments.threads, chosen.size(), [&](std::size_t i) {
+    const std::size_t b = chosen[i];
+    welded.flat[b] = flatten_foil(welded.state.mesh, static_cast<base::Index>(b), welded.state.stress_rule,
+                                  welded.cuts[b], *welded.wanted[b]);
+  });
+  for (const std::size_t b : chosen) {
+    if (welded.flat[b]->flat.converged) continue;
+    throw base::Error(base::ExitCode::no_equilibrium,
+                      fmt::format("the strips of foil `{}` did not settle in the plane after {} iterations",
+                                  mesh.blocks[b].name, welded.flat[b]->flat.iterations));
+  }
+  weld(welded);
+  return welded;
+}
+
+int run(int argc, char** argv) {
+  const common::Clock clock;
+  const common::Start start = common::read_start("pattern", argc, argv);
+  if (start.arguments.in.empty() || start.arguments.check) return 0;
+  solver::linear::use_one_blas_thread();
+  const auto& settings = std::get<workflow::PatternSettings>(start.stage().settings);
+  const std::vector<std::size_t> chosen = foils_to_cut(start, settings);
+  Welded welded = cut_and_flatten(start, settings, chosen);
+
+  common::Summary summary;
+  summary.set("stage", "pattern");
+  summary.set("id", start.stage().id);
+  summary.set("converged", true);
+  summary.set("verdict", "converged");
+  int iterations = 0;
+  int factorizations = 0;
+  for (const std::size_t b : chosen) {
+    const std::string& name = welded.state.mesh.blocks[b].name;
+    iterations = std::max(iterations, welded.flat[b]->flat.iterations);
+    factorizations += welded.flat[b]->flat.factorizations;
+    report_strips(figures_of(welded, b), *welded.wanted[b], name, summary);
+    summary.set("foils." + name + ".area",
+                geometry::surface_area(welded.state.mesh, welded.state.mesh.blocks[b], welded.state.mesh.nodes));
+  }
+  summary.set("iterations", iterations);
+  summary.set("factorizations", factorizations);
+  for (const pipeline::state::Chamber& chamber : welded.state.chambers) {
+    summary.set("chambers." + chamber.name + ".gauge_pressure", chamber.gauge_pressure);
+    summary.set("chambers." + chamber.name + ".volume", chamber.volume);
+  }
+  welded.state.provenance = common::provenance(start);
+  welded.state.provenance.converged = true;
+  welded.state.provenance.verdict = "converged";
+  welded.state.provenance.load_factor = 1;
+  pipeline::state::write_state(welded.state, start.arguments.out);
+  common::summarize_mesh(welded.state, summary);
+  summary.set("timing.total", clock.seconds());
+  summary.set("memory_peak", common::peak_memory());
+  summary.append("modelled", "strips welded edge to edge, mating seams equally long");
+  summary.append("not_modelled", "double thickness of the welds");
+  summary.append("not_modelled", "curvature of the frame's clamps");
+  summary.write(start.arguments.out.parent_path() / "summary.json");
+  return 0;
+}
+
+} // namespace
+
+} // namespace pneuma::stages::pattern
+
+int main(int argc, char** argv) {
+  return pneuma::base::guarded_main("pneuma-pattern", pneuma::stages::pattern::run, argc, argv);
+}
