@@ -155,6 +155,7 @@ WithEnds with_ends(const Triangulation& surface, const Vec2& from, const Vec2& t
 
 std::vector<Vec2> in_plan(const geodesics::Path& path) {
   std::vector<Vec2> plan;
+  plan.reserve(path.points.size());
   for (const Vec3& point : path.points) plan.emplace_back(point.head<2>());
   return plan;
 }
