@@ -12,21 +12,9 @@ namespace pneuma::geometry {
 
 namespace {
 
-// The points of a plan with straight edges as they are given, each the start of the edge of its number; empty for a
-// circle.
-std::vector<Vec2> given_points(const Plan& plan) {
-  if (const auto* r = std::get_if<Rectangle>(&plan)) {
-    const double x = r->length / 2;
-    const double y = r->width / 2;
-    return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
-  }
-  if (const auto* t = std::get_if<Triangle>(&plan)) return {t->points[0], t->points[1], t->points[2]};
-  return {};
-}
-
 // Corners counterclockwise, the first edge of the plan first: run backwards, it begins at its second point.
 std::vector<Vec2> corners_of(const Plan& plan) {
-  std::vector<Vec2> corners = given_points(plan);
+  std::vector<Vec2> corners = corner_points(plan);
   if (!corners.empty() && signed_area(corners) < 0) {
     std::reverse(corners.begin(), corners.end());
     std::rotate(corners.begin(), corners.end() - 2, corners.end());
@@ -101,7 +89,7 @@ std::vector<double> rim_corners(const Plan& plan) {
 std::vector<std::size_t> rim_edges(const Plan& plan) {
   std::vector<std::size_t> edges(rim_corners(plan).size());
   std::iota(edges.begin(), edges.end(), std::size_t{0});
-  const std::vector<Vec2> points = given_points(plan);
+  const std::vector<Vec2> points = corner_points(plan);
   if (!points.empty() && signed_area(points) < 0) std::reverse(edges.begin() + 1, edges.end());
   return edges;
 }

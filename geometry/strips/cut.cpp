@@ -169,8 +169,15 @@ void check_width(const Plan& plan, const Outline& outline, double size) {
   }
 }
 
+std::vector<Vec2> places_of(const Face& face, const Outline& outline) {
+  std::vector<Vec2> ring;
+  ring.reserve(face.ring.size());
+  for (const Index i : face.ring) ring.push_back(outline.points[at(i)]);
+  return ring;
+}
+
 Vec2 centre_of(std::span<const Vec2> ring) {
-  const Vec2 origin = ring.front();
+  const Vec2& origin = ring.front();
   Vec2 moment = Vec2::Zero();
   double doubled = 0;
   for (std::size_t k = 0; k < ring.size(); ++k) {
@@ -202,6 +209,8 @@ std::vector<Face> faces_of(const Outline& outline, Index stations, const std::ve
       face.ring.push_back(s);
     }
   };
+  std::vector<std::array<std::size_t, 2>> number(outline.lines.size()); // of each line's ends
+  for (std::size_t e = 0; e < ends.size(); ++e) number[ends[e].line][ends[e].last ? 1 : 0] = e;
   std::vector<bool> walked(ends.size(), false); // the rim behind each end
   for (std::size_t first = 0; first < ends.size(); ++first) {
     if (walked[first]) continue;
@@ -216,9 +225,7 @@ std::vector<Face> faces_of(const Outline& outline, Index stations, const std::ve
       if (last) std::reverse(along.begin(), along.end());
       beside[line][last ? 1 : 0] = static_cast<Index>(faces.size()); // walked forwards, it is to the left of the line
       face.ring.insert(face.ring.end(), along.begin(), along.end() - 1);
-      e = static_cast<std::size_t>(
-          std::ranges::find_if(ends, [&](const End& end) { return end.line == line && end.last != last; }) -
-          ends.begin());
+      e = number[line][last ? 0 : 1];
     } while (!walked[e]);
     faces.push_back(std::move(face));
   }
@@ -301,9 +308,7 @@ Division divide(const Outline& outline, const RimStations& rim, std::span<const 
         fmt::format("the lines from {} on cross each other", text(outline.points[at(ends.front().station)])));
   }
   for (Face& face : division.faces) {
-    std::vector<Vec2> ring;
-    for (const Index i : face.ring) ring.push_back(outline.points[at(i)]);
-    face.centre = centre_of(ring);
+    face.centre = centre_of(places_of(face, outline));
   }
   order(division, mean_direction(outline));
   return division;
@@ -314,8 +319,7 @@ Sheet fill_strips(const Outline& outline, const Division& division, int corners)
   sheet.points = outline.points;
   for (std::size_t strip = 0; strip < division.faces.size(); ++strip) {
     const Face& face = division.faces[strip];
-    std::vector<Vec2> ring;
-    for (const Index i : face.ring) ring.push_back(outline.points[at(i)]);
+    const std::vector<Vec2> ring = places_of(face, outline);
     const meshing::CornerMesh mesh = meshing::filled(ring, face.runs, corners);
     const auto shift = static_cast<Index>(sheet.points.size() - ring.size());
     sheet.points.insert(sheet.points.end(), mesh.points.begin() + static_cast<std::ptrdiff_t>(ring.size()),

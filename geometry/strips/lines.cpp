@@ -155,41 +155,44 @@ WithEnds with_ends(const Triangulation& surface, const Vec2& from, const Vec2& t
 
 std::vector<Vec2> in_plan(const geodesics::Path& path) {
   std::vector<Vec2> plan;
+  plan.reserve(path.points.size());
   for (const Vec3& point : path.points) plan.emplace_back(point.head<2>());
   return plan;
 }
 
 // Refuses lines that leave the plan or run along its rim; near their ends they may be as near as they like.
 void check_inside(const Surface& surface, std::span<const Vec2> line) {
-  const double step = surface.size / 4;
   double whole = 0;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) whole += (line[k + 1] - line[k]).norm();
   if (!(whole > surface.size))
     throw GeometryError(fmt::format("the line at {} is shorter than an element", text(line[0])));
-  const double free = std::min(surface.size, whole / 3); // length at the ends
-  const double near = 0.05 * free;
-  double run = 0;
-  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-    const Vec2 along = line[k + 1] - line[k];
-    const int parts = std::max(static_cast<int>(std::ceil(along.norm() / step)), 1);
-    for (int i = 0; i < parts; ++i) {
-      const double part = (i + 0.5) / parts;
-      const Vec2 place = line[k] + part * along;
-      if (!inside(surface.plan, place, 1e-9 * whole)) {
-        throw GeometryError(
-            fmt::format("the line from {} to {} leaves the plan at {}: move its ends, or divide the plan",
-                        text(line.front()), text(line.back()), text(place)));
+  // calls visit(place, length to the nearer end)
+  const auto each_sample = [&](auto&& visit) {
+    double run = 0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+      const Vec2 along = line[k + 1] - line[k];
+      const int parts = std::max(static_cast<int>(std::ceil(4 * along.norm() / surface.size)), 1);
+      for (int i = 0; i < parts; ++i) {
+        const double part = (i + 0.5) / parts;
+        const double length = run + part * along.norm();
+        visit(Vec2(line[k] + part * along), std::min(length, whole - length));
       }
-      const double length = run + part * along.norm();
-      const Vec2 rim = rim_point(surface.plan, rim_position(surface.plan, place));
-      if (length > free && whole - length > free && (rim - place).norm() < near) {
-        throw GeometryError(fmt::format("the line from {} to {} runs along the rim at {}: a line must join two "
-                                        "different parts of the rim through the inside",
-                                        text(line.front()), text(line.back()), text(place)));
-      }
+      run += along.norm();
     }
-    run += along.norm();
-  }
+  };
+  each_sample([&](const Vec2& place, double) {
+    if (inside(surface.plan, place, 1e-9 * whole)) return;
+    throw GeometryError(fmt::format("the line from {} to {} leaves the plan at {}: move its ends, or divide the plan",
+                                    text(line.front()), text(line.back()), text(place)));
+  });
+  const double free = std::min(surface.size, whole / 3); // length at the ends
+  each_sample([&](const Vec2& place, double length) {
+    const Vec2 rim = rim_point(surface.plan, rim_position(surface.plan, place));
+    if (length <= free || (rim - place).norm() >= 0.05 * free) return;
+    throw GeometryError(fmt::format("the line from {} to {} runs along the rim at {}: a line must join two different "
+                                    "parts of the rim through the inside",
+                                    text(line.front()), text(line.back()), text(place)));
+  });
 }
 
 } // namespace

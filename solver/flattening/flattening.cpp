@@ -29,9 +29,9 @@ class Equations {
 public:
   explicit Equations(const Problem& problem)
       : problem_(problem), nodes_(geometry::nodes_per_element(problem.element)),
-        reference_(element::make_reference(problem.element, problem.rule,
-                                           element::corner_coordinates(problem.nodes->connectivity, problem.form),
-                                           Vec3::UnitX())) { // a frame without meaning of its own; no foil stands upright
+        reference_(element::make_reference(
+            problem.element, problem.rule, element::corner_coordinates(problem.nodes->connectivity, problem.form),
+            Vec3::UnitX())) { // a frame without meaning of its own; no foil stands upright
     double area = 0;
     for (const double part : reference_.area) area += part;
     area_ = area;

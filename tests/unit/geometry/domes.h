@@ -5,18 +5,23 @@
 
 #include "geometry/meshing/plan_mesh.h"
 #include "geometry/polygon.h"
+#include "geometry/rim.h"
 
 namespace domes {
 
 using namespace pneuma::geometry;
 
-// Height of a smooth dome over a plan: `sag` at its centre, zero on the rim.
+// Height of a dome over a plan: `sag` at its centre or less, zero on the rim.
 inline double height(const Plan& plan, const Vec2& at, double sag) {
   if (const auto* r = std::get_if<Rectangle>(&plan)) {
     return sag * (1 - 4 * at.x() * at.x() / (r->length * r->length)) *
            (1 - 4 * at.y() * at.y() / (r->width * r->width));
   }
   if (const auto* c = std::get_if<Circle>(&plan)) return sag * (1 - at.squaredNorm() / (c->radius * c->radius));
+  if (std::holds_alternative<Polygon>(plan)) { // steep at the rim, with ridges
+    const double distance = (rim_point(plan, rim_position(plan, at)) - at).norm();
+    return sag * distance / (distance + 0.5);
+  }
   const auto& p = std::get<Triangle>(plan).points;
   const double whole = cross(p[1] - p[0], p[2] - p[0]);
   const double a = cross(p[1] - at, p[2] - at) / whole;

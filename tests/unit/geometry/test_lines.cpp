@@ -90,6 +90,15 @@ TEST(GeodesicLine, AlongTheRimIsRefused) {
   EXPECT_THAT(refusal([&] { geodesic_line(surface, 0.5, 0.6); }), HasSubstr("closer than an element"));
 }
 
+TEST(StraightLine, AcrossTheOutsideOfAnInnerCornerIsRefused) {
+  const Polygon angle{{{-3, -2}, {3, -2}, {3, 0}, {0, 0}, {0, 2}, {-3, 2}}};
+  const strips::Surface surface = dome(angle, 0.4, 0.3);
+  EXPECT_THAT(refusal([&] { straight_line(surface, position(angle, -1, 2), position(angle, 3, -1)); }),
+              HasSubstr("leaves the plan at (0."));
+  EXPECT_THAT(refusal([&] { geodesic_line(surface, position(angle, -0.1, 2), position(angle, 3, -0.1)); }),
+              HasSubstr("runs along the rim at ("));
+}
+
 TEST(StraightLine, AlongTheRimIsRefused) {
   const strips::Surface surface = dome(square, 0.4, 0.25);
   EXPECT_THAT(refusal([&] { straight_line(surface, 0.5, 3.5); }), HasSubstr("runs along the rim at ("));
