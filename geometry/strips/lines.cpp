@@ -22,7 +22,9 @@ namespace {
 
 using base::GeometryError;
 
-constexpr double most_triangles = 4000; // of the coarse copy: the exact search takes a fraction of a second
+constexpr double most_triangles = 1500; // of the coarse copy: the exact search takes some hundredths of a second
+
+constexpr double longest = 1e-5; // by how much a line may be longer than the shortest on the triangles, relative
 
 std::string text(const Vec2& place) {
   return fmt::format("({:.6g}, {:.6g})", place.x(), place.y());
@@ -160,6 +162,46 @@ std::vector<Vec2> in_plan(const geodesics::Path& path) {
   return plan;
 }
 
+// Points at equal parts of a polyline's length.
+std::vector<Vec2> at_equal_parts(std::span<const Vec2> line, int parts) {
+  std::vector<double> run{0};
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) run.push_back(run.back() + (line[k + 1] - line[k]).norm());
+  std::vector<Vec2> points;
+  std::size_t piece = 0;
+  for (int i = 0; i <= parts; ++i) {
+    const double wanted = run.back() * i / parts;
+    while (piece + 2 < run.size() && run[piece + 1] < wanted) ++piece;
+    const double length = run[piece + 1] - run[piece];
+    const double part = length > 0 ? (wanted - run[piece]) / length : 0;
+    points.push_back(line[piece] + std::clamp(part, 0.0, 1.0) * (line[piece + 1] - line[piece]));
+  }
+  return points;
+}
+
+// A line bent to the left by `offset` in the middle; empty where it would leave the plan.
+std::vector<Vec2> beside(const Surface& surface, std::span<const Vec2> line, double offset) {
+  constexpr int parts = 32;
+  std::vector<Vec2> points = at_equal_parts(line, parts);
+  const std::vector<Vec2> straight = points;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Vec2 along = (straight[i + 1] - straight[i - 1]).normalized();
+    const double t = static_cast<double>(i) / parts;
+    points[i] += std::min(1.0, 8 * t * (1 - t)) * offset * Vec2(-along.y(), along.x());
+    if (!inside(surface.plan, points[i], 0)) return {};
+  }
+  return points;
+}
+
+CuttingLine between(const CuttingLine& left, const CuttingLine& right) {
+  const int parts = static_cast<int>(std::max(left.plan.size(), right.plan.size()));
+  CuttingLine line = left;
+  line.plan = at_equal_parts(left.plan, parts);
+  const std::vector<Vec2> other = at_equal_parts(right.plan, parts);
+  for (std::size_t i = 0; i < line.plan.size(); ++i) line.plan[i] = (line.plan[i] + other[i]) / 2;
+  line.plan.back() = left.plan.back();
+  return line;
+}
+
 // Refuses lines that leave the plan or run along its rim; near their ends they may be as near as they like.
 void check_inside(const Surface& surface, std::span<const Vec2> line) {
   double whole = 0;
@@ -224,10 +266,23 @@ CuttingLine geodesic_line(const Surface& surface, double from, double to) {
   const WithEnds coarse = with_ends(surface.coarse, start, end);
   const geodesics::Path guess = geodesics::shortest_path(coarse.surface, coarse.from, coarse.to);
   const WithEnds fine = with_ends(surface.fine, start, end);
-  const geodesics::Path path = geodesics::relaxed(fine.surface, fine.from, fine.to, in_plan(guess));
-  CuttingLine line{from, to, in_plan(path), path.length};
-  line.plan.front() = start;
-  line.plan.back() = end;
+  const auto relax = [&](const std::vector<Vec2>& near) {
+    const geodesics::Path path = geodesics::relaxed(fine.surface, fine.from, fine.to, near);
+    CuttingLine line{from, to, in_plan(path), path.length};
+    line.plan.front() = start;
+    line.plan.back() = end;
+    return line;
+  };
+  CuttingLine line = relax(in_plan(guess));
+  // Triangles hold their curvature in their vertices, which a shortest line passes on one side: there is one on either
+  // side of a row of vertices, half a row off. The line of the smooth surface lies between them.
+  const auto left = beside(surface, line.plan, surface.size);
+  const auto right = beside(surface, line.plan, -surface.size);
+  if (!left.empty() && !right.empty()) {
+    CuttingLine middle = between(relax(left), relax(right));
+    middle.length = Track(surface.chart, middle.plan, surface.size / 8).length();
+    if (middle.length <= (1 + longest) * line.length) line = middle;
+  }
   check_inside(surface, line.plan);
   return line;
 }

@@ -23,16 +23,17 @@ struct Surface {
   Plan plan;
   Chart chart;
   Triangulation fine;   // the mesh itself, quadratic elements divided in two a side
-  Triangulation coarse; // at most a few thousand triangles, all on the surface: for the exact search
+  Triangulation coarse; // at most some thousand triangles, all on the surface: for the exact search
   double size = 0;      // mean side of its elements in plan, m
 };
 
 // Throws GeometryError where the surface is no graph over the plan.
 Surface prepare(const Plan& plan, const Mesh& mesh, const Block& block, std::span<const Vec3> positions);
 
-// The shortest line on the surface between two positions on the rim: exact on the coarse copy (CGAL), then relaxed on
-// the fine one. On smooth domes within 1e-5 of the exact length of the fine triangles. Throws GeometryError with the
-// place where the line runs along the rim or cannot be found.
+// The shortest line on the surface between two positions on the rim: exact on the coarse copy (CGAL), relaxed on the
+// fine one from both sides, and their middle: at most 1e-5 longer than the shortest line on the triangles, and
+// symmetric where the surface is. Throws GeometryError with the place where the line runs along the rim or cannot be
+// found.
 CuttingLine geodesic_line(const Surface& surface, double from, double to);
 
 // The line that is straight in plan. Throws GeometryError with the place where it leaves the plan.
