@@ -56,7 +56,10 @@ class Planner {
 public:
   Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil)
       : surface_(surface), settings_(settings),
-        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing} {}
+        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+        rough_(surface) {
+    rough_.fine = rough_.coarse;
+  }
 
   Layout given_curves() const {
     Layout layout;
@@ -123,17 +126,19 @@ private:
     return found;
   }
 
-  CuttingLine line(double from, double to) const {
-    return settings_.lines == workflow::CuttingLines::geodesic ? strips::geodesic_line(surface_, from, to)
-                                                               : strips::straight_line(surface_, from, to);
+  CuttingLine line(const strips::Surface& surface, double from, double to) const {
+    return settings_.lines == workflow::CuttingLines::geodesic ? strips::geodesic_line(surface, from, to)
+                                                               : strips::straight_line(surface, from, to);
   }
 
-  std::vector<CuttingLine> lines_at(const std::vector<double>& offsets, double direction) const {
+  std::vector<CuttingLine> lines_at(const strips::Surface& surface, const std::vector<double>& offsets,
+                                    double direction) const {
     std::vector<CuttingLine> lines;
     for (const double offset : offsets) {
       const std::vector<double> crossings =
           geometry::rim_crossings(surface_.plan, offset * across(direction), along(direction));
-      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) lines.push_back(line(crossings[k], crossings[k + 1]));
+      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+        lines.push_back(line(surface, crossings[k], crossings[k + 1]));
     }
     if (const std::string crossing = strips::crossing(lines); !crossing.empty()) {
       throw base::GeometryError(
@@ -182,15 +187,16 @@ private:
     std::vector<double> offsets;
     for (int k = 0; k <= count; ++k) offsets.push_back(low + (high - low) * k / count);
     Layout layout{direction, {}, fmt::format("{} strips at {:.1f} degrees", count, direction * degrees)};
-    for (int round = 0;; ++round) {
-      layout.lines = lines_at({offsets.begin() + 1, offsets.end() - 1}, direction);
-      if (round == 3) break;
-      const std::vector<double> width = measure(layout.lines, direction).width;
+    constexpr int rounds = 3;
+    const auto inner = [&] { return std::vector<double>(offsets.begin() + 1, offsets.end() - 1); };
+    for (int round = 0; round < rounds; ++round) {
+      const std::vector<double> width = measure(lines_at(rough_, inner(), direction), direction).width;
       if (width.size() != static_cast<std::size_t>(count)) break; // a plan with bays: strips in parts
       const auto [least, most] = std::minmax_element(width.begin(), width.end());
       if (*most - *least < 0.005 * *most) break;
       offsets = balanced(offsets, width);
     }
+    layout.lines = lines_at(surface_, inner(), direction);
     return layout;
   }
 
@@ -232,6 +238,7 @@ private:
   const workflow::PatternSettings& settings_;
   std::string foil_;
   fabrication::Allowances allowances_;
+  strips::Surface rough_; // with the coarse copy only: for the widths of trials
 };
 
 } // namespace
