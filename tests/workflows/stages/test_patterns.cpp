@@ -150,7 +150,7 @@ TEST_F(Patterns, OfAPolygonGoThroughTheWholeChain) {
 }
 
 TEST_F(Patterns, OfASymmetricCushionAreSymmetric) {
-  for (const std::string plan : {rectangle, std::string("{shape: circle, radius: 2 m}")}) {
+  for (const std::string& plan : {rectangle, std::string("{shape: circle, radius: 2 m}")}) {
     write(cushion("T6", plan, "0.4 m", "  strips: {run: pattern, from: form, strips_per_foil: 4, direction: 0 deg}\n"));
     run();
     const json upper = strips("strips"), lower = strips("strips", "lower");
