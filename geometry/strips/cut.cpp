@@ -353,14 +353,15 @@ Sheet fill_strips(const Outline& outline, const Division& division, int corners,
 // Puts foils into the new mesh, one after the other.
 class Assembly {
 public:
-  Assembly(const Mesh& old, const RimStations& rim) : rim_(rim) {
+  Assembly(const Plan& plan, const Mesh& old, const RimStations& rim) : rim_(rim) {
+    const bool closed = std::holds_alternative<Circle>(plan);
     mesh_.element = old.element;
     for (std::size_t i = 0; i < rim.points.size(); ++i) {
       mesh_.nodes.emplace_back(rim.points[i].x(), rim.points[i].y(), 0);
       if (quadratic()) mesh_.nodes.emplace_back(rim.middles[i].x(), rim.middles[i].y(), 0);
     }
     for (std::size_t e = 0; e < old.edges.size(); ++e) {
-      Edge edge{old.edges[e].name, old.edges[e].closed, {}};
+      Edge edge{old.edges[e].name, closed, {}};
       const std::vector<Index>& stations = rim.edges[e];
       for (std::size_t k = 0; k < stations.size(); ++k) {
         edge.nodes.push_back(rim_node(stations[k]));
@@ -463,7 +464,7 @@ CutMesh cut(const Plan& plan, const Mesh& old, std::span<const Cut> foils, doubl
   const int corners = corners_per_element(old.element);
   const bool even = corners == 4;
   const RimStations rim = rim_stations(plan, foils, size, even);
-  Assembly assembly(old, rim);
+  Assembly assembly(plan, old, rim);
   CutMesh result;
   std::vector<Filled> known;
   for (std::size_t f = 0; f < foils.size(); ++f) {

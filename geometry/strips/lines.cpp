@@ -273,14 +273,18 @@ CuttingLine geodesic_line(const Surface& surface, double from, double to) {
     line.plan.back() = end;
     return line;
   };
-  CuttingLine line = relax(in_plan(guess));
+  // on the surface itself: curved elements are longer than their triangles by more than lines differ
+  const auto measured = [&](CuttingLine line) {
+    line.length = Track(surface.chart, line.plan, surface.size / 8).length();
+    return line;
+  };
+  CuttingLine line = measured(relax(in_plan(guess)));
   // Triangles hold their curvature in their vertices, which a shortest line passes on one side: there is one on either
   // side of a row of vertices, half a row off. The line of the smooth surface lies between them.
   const auto left = beside(surface, line.plan, surface.size);
   const auto right = beside(surface, line.plan, -surface.size);
   if (!left.empty() && !right.empty()) {
-    CuttingLine middle = between(relax(left), relax(right));
-    middle.length = Track(surface.chart, middle.plan, surface.size / 8).length();
+    const CuttingLine middle = measured(between(relax(left), relax(right)));
     if (middle.length <= (1 + longest) * line.length) line = middle;
   }
   check_inside(surface, line.plan);

@@ -56,8 +56,8 @@ std::vector<std::vector<RimStations::Ends>> merge_ends(const Plan& plan, std::sp
       if (std::ranges::count(taken, number) > 0) {
         const Vec2 place = rim_point(plan, position);
         throw base::GeometryError(
-            fmt::format("two lines of one foil end at ({:.6g}, {:.6g}), or within a third of the mesh size {:.3g} m: "
-                        "move one of them, or take smaller elements",
+            fmt::format("two lines of one foil end at ({:.6g}, {:.6g}) m, or within a third of the mesh size {:.3g} m: "
+                        "move one of them, take fewer strips, or smaller elements",
                         place.x(), place.y(), size));
       }
       taken.push_back(number);

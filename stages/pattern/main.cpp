@@ -40,6 +40,42 @@ std::vector<std::size_t> foils_to_cut(const common::Start& start, const workflow
   return chosen;
 }
 
+// Place of the key that decides how a foil is cut, for messages.
+std::string cutting_place(const common::Start& start, const std::string& foil) {
+  const std::string stage = "stages." + start.stage().id + ".";
+  for (const std::string& key :
+       {"curves." + foil + ".0.0.0", std::string("strips_per_foil"), std::string("roll.width")}) {
+    if (std::string place = common::place(start.workflow, stage + key); !place.empty()) return place;
+  }
+  return "";
+}
+
+// Runs `make` and puts what is said of a shape that cannot be at a place of the user's file.
+template <class Make>
+auto at_place(const std::string& place, const Make& make) {
+  try {
+    return make();
+  } catch (const base::GeometryError& error) {
+    throw base::GeometryError(place + error.what());
+  }
+}
+
+Layout lay_out_at_place(const common::Start& start, const workflow::PatternSettings& settings,
+                        const strips::Surface& surface, const std::string& foil) {
+  try {
+    return lay_out(surface, settings, foil);
+  } catch (const base::GeometryError& error) {
+    std::string message = error.what();
+    if (message.starts_with(foil + ": ")) message.erase(0, foil.size() + 2);
+    const std::string name = fmt::format("foil `{}`: ", foil);
+    if (!message.starts_with(name)) message = name + message;
+    if (!settings.strips_per_foil && settings.roll_given && !settings.curves.contains(foil)) {
+      message += "; the roll asks for so many strips, and a wider roll for fewer";
+    }
+    throw base::GeometryError(cutting_place(start, foil) + message);
+  }
+}
+
 // What the flat strips of a foil shall be.
 Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& settings, std::size_t b,
                  double direction) {
@@ -78,7 +114,7 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
   welded.wanted.resize(mesh.blocks.size());
   welded.flat.resize(mesh.blocks.size());
   for (const std::size_t b : chosen) {
-    const Layout layout = lay_out(surfaces[b], settings, mesh.blocks[b].name);
+    const Layout layout = lay_out_at_place(start, settings, surfaces[b], mesh.blocks[b].name);
     base::say(fmt::format("{}: {}", mesh.blocks[b].name, layout.reason));
     cuts[b].lines = layout.lines;
     welded.wanted[b] = wanted_of(start, settings, b, layout.direction);
@@ -88,7 +124,9 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
     base::say(
         fmt::format("elements of {:.3g} m instead of {:.3g} m, for the narrowest strip", size, surfaces.front().size));
   }
-  strips::CutMesh cut = strips::cut(start.workflow.cushion.plan, mesh, cuts, size);
+  strips::CutMesh cut = at_place(cutting_place(start, mesh.blocks[chosen.front()].name), [&] {
+    return strips::cut(start.workflow.cushion.plan, mesh, cuts, size);
+  });
   welded.state = transferred(start, cut);
   welded.cuts = std::move(cut.foils);
   base::parallel_chunks(start.arguments.threads, chosen.size(), [&](std::size_t i) {
@@ -115,18 +153,22 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
     sheets.push_back({std::move(strip), quality[sheets.size()].distortion});
   }
   const workflow::Roll& roll = settings.roll;
-  return fabricate(welded.state.mesh.blocks[b].name, sheets,
-                   {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
-                   {roll.width, roll.selvedge, 0.01, !settings.roll_given}, start.arguments.out.parent_path());
+  return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
+    return fabricate(welded.state.mesh.blocks[b].name, sheets,
+                     {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+                     {roll.width, roll.selvedge, 0.01, !settings.roll_given}, start.arguments.out.parent_path());
+  });
 }
 
 int run(int argc, char** argv) {
   const common::Clock clock;
   const common::Start start = common::read_start("pattern", argc, argv);
-  if (start.arguments.in.empty() || start.arguments.check) return 0;
-  solver::linear::use_one_blas_thread();
+  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
   const auto& settings = std::get<workflow::PatternSettings>(start.stage().settings);
   const std::vector<std::size_t> chosen = foils_to_cut(start, settings);
+  for (const std::size_t b : chosen) wanted_of(start, settings, b, 0); // that the foils can carry their prestress
+  if (start.arguments.check) return 0;
+  solver::linear::use_one_blas_thread();
   Welded welded = cut_and_flatten(start, settings, chosen);
 
   common::Summary summary;

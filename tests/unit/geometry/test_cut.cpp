@@ -337,6 +337,14 @@ TEST_P(CutOfEveryElement, IsTheSameEachTime) {
   EXPECT_EQ(first.mesh.blocks[0].connectivity, second.mesh.blocks[0].connectivity);
 }
 
+TEST(Cut, OfACircleHasAClosedRimWhateverTheOldMeshSays) {
+  Cushion cushion(circle, ElementType::T3, 0.5);
+  cushion.mesh.edges[0].closed = false; // a mesh that only brings names
+  const CutMesh cut = cushion.cut_along({cushion.line(0, {0, 0.3}, {1, 0}, false)}, {}, 0.5);
+  EXPECT_TRUE(cut.mesh.edges[0].closed);
+  EXPECT_EQ(cut.foils[0].strips, 2);
+}
+
 TEST(Cut, KeepsABaseAsItIs) {
   const Mesh plan_mesh = mesh_plan(rectangle, {ElementType::T6, 0.5, std::nullopt});
   Mesh mesh = stack(plan_mesh, {{"foil"}, {"wall", BlockKind::base}});

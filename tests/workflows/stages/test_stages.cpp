@@ -2,60 +2,19 @@
 // The programs themselves, chained by the runner and one by one, on small cushions.
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "pipeline/state/state_file.h"
+#include "tests/workflows/stages/programs.h"
 
+namespace pneuma::tests {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
 using testing::HasSubstr;
 
-const fs::path programs = PNEUMA_PROGRAMS;
-
-struct Outcome {
-  int code = 0;
-  std::string text; // both streams
-};
-
-Outcome call(const std::string& command) {
-  Outcome outcome;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (fgets(buffer.data(), buffer.size(), pipe) != nullptr) outcome.text += buffer.data();
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
-  return outcome;
-}
-
-class Stages : public testing::Test {
-protected:
-  Stages() {
-    std::string name = (fs::temp_directory_path() / "pneuma-stages-XXXXXX").string();
-    folder = mkdtemp(name.data());
-  }
-  ~Stages() override { fs::remove_all(folder); }
-
-  void write(const std::string& text) const { std::ofstream(folder / "w.yaml") << text; }
-  Outcome pneuma(const std::string& words) const {
-    return call("cd " + folder.string() + " && " + (programs / "pneuma").string() + " " + words);
-  }
-  fs::path out(const std::string& stage) const { return folder / "out" / "w" / stage; }
-  json summary(const std::string& stage) const { return json::parse(std::ifstream(out(stage) / "summary.json")); }
-
-  fs::path folder;
-};
+using Stages = InFolder;
 
 // The cushion of example B12 on a coarse mesh, with room for more stages.
 std::string cushion(const std::string& element, const std::string& more) {
@@ -267,8 +226,8 @@ TEST_F(Stages, EachStageRunsAloneAndRefusesADamagedOrWrongState) {
                 " --in " + in.string() + " --out " + (folder / "alone.hdf").string());
   };
   ASSERT_EQ(inflate(out("form") / "state.hdf").code, 0);
-  const auto alone = pneuma::pipeline::state::read_state(folder / "alone.hdf");
-  const auto chained = pneuma::pipeline::state::read_state(out("inflated") / "state.hdf");
+  const auto alone = pipeline::state::read_state(folder / "alone.hdf");
+  const auto chained = pipeline::state::read_state(out("inflated") / "state.hdf");
   EXPECT_EQ(alone.mesh.nodes, chained.mesh.nodes);
 
   const Outcome wrong = inflate(out("mesh") / "state.hdf");
@@ -349,3 +308,4 @@ TEST_F(Stages, InterruptedChainKeepsWhatIsComputed) {
 }
 
 } // namespace
+} // namespace pneuma::tests

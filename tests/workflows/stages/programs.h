@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace pneuma::tests {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+inline const fs::path programs = PNEUMA_PROGRAMS;
+
+struct Outcome {
+  int code = 0;
+  std::string text; // both streams
+};
+
+inline Outcome call(const std::string& command) {
+  Outcome outcome;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (fgets(buffer.data(), buffer.size(), pipe) != nullptr) outcome.text += buffer.data();
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
+  return outcome;
+}
+
+// A folder of its own with the workflow `w.yaml`, removed at the end.
+class InFolder : public testing::Test {
+protected:
+  InFolder() {
+    std::string name = (fs::temp_directory_path() / "pneuma-stages-XXXXXX").string();
+    folder = mkdtemp(name.data());
+  }
+  ~InFolder() override { fs::remove_all(folder); }
+
+  void write(const std::string& text) const { std::ofstream(folder / "w.yaml") << text; }
+  Outcome pneuma(const std::string& words) const {
+    return call("cd " + folder.string() + " && " + (programs / "pneuma").string() + " " + words);
+  }
+  fs::path out(const std::string& stage) const { return folder / "out" / "w" / stage; }
+  json summary(const std::string& stage) const { return json::parse(std::ifstream(out(stage) / "summary.json")); }
+
+  fs::path folder;
+};
+
+} // namespace pneuma::tests
