@@ -211,9 +211,9 @@ std::vector<int> numbers_of_strips() {
   return {2, 4, 8};
 }
 
-class Patterns : public testing::TestWithParam<const Foil*> {};
+class WeldedStrips : public testing::TestWithParam<const Foil*> {};
 
-TEST_P(Patterns, ShapeErrorFallsWithTheSquareOfTheWidthWithCompensationAndStaysAtAPlateauWithout) {
+TEST_P(WeldedStrips, ShapeErrorFallsWithTheSquareOfTheWidthWithCompensationAndStaysAtAPlateauWithout) {
   const Foil& foil = *GetParam();
   std::printf("%s: strips, compensation | normal distance max, mean, mm | stress deviation, %% | mismatch, mm/m\n",
               foil.name);
@@ -239,7 +239,7 @@ TEST_P(Patterns, ShapeErrorFallsWithTheSquareOfTheWidthWithCompensationAndStaysA
   EXPECT_GT(without.back(), 10 * with.back());
 }
 
-TEST_P(Patterns, ComeCloserToTheWantedStressThanArapStrips) {
+TEST_P(WeldedStrips, ComeCloserToTheWantedStressThanArapStrips) {
   const Foil& foil = *GetParam();
   const Stripped form = stripped(foil, 6);
   const Inflated ours = inflate(foil, form.cut, our_strips(foil, form.cut, true));
@@ -253,7 +253,7 @@ TEST_P(Patterns, ComeCloserToTheWantedStressThanArapStrips) {
   EXPECT_LT(ours.mismatch, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Patterns, testing::Values(&rectangle, &triangle),
+INSTANTIATE_TEST_SUITE_P(, WeldedStrips, testing::Values(&rectangle, &triangle),
                          [](const auto& test) { return std::string(test.index == 0 ? "Rectangle" : "Triangle"); });
 
 } // namespace
