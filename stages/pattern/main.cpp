@@ -66,7 +66,6 @@ Layout lay_out_at_place(const common::Start& start, const workflow::PatternSetti
     return lay_out(surface, settings, foil);
   } catch (const base::GeometryError& error) {
     std::string message = error.what();
-    if (message.starts_with(foil + ": ")) message.erase(0, foil.size() + 2);
     const std::string name = fmt::format("foil `{}`: ", foil);
     if (!message.starts_with(name)) message = name + message;
     if (!settings.strips_per_foil && settings.roll_given && !settings.curves.contains(foil)) {
