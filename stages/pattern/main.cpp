@@ -105,7 +105,9 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
   const geometry::Mesh& mesh = start.state.mesh;
   std::vector<strips::Surface> surfaces;
   for (const geometry::Block& block : mesh.blocks) {
-    surfaces.push_back(strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes));
+    surfaces.push_back(at_place(
+        fmt::format("{}foil `{}`: ", common::place(start.workflow, "stages." + start.stage().id + ".from"), block.name),
+        [&] { return strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes); }));
   }
   std::vector<strips::Cut> cuts;
   for (const strips::Surface& surface : surfaces) cuts.push_back({&surface, {}});

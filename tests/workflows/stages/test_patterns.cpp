@@ -440,6 +440,16 @@ TEST_F(Patterns, AskedForInTheWrongPlaceAreRefusedThere) {
   EXPECT_THAT(outcome.text, ContainsRegex("w.yaml:13:[0-9]+: all foils are flat: there is nothing to cut"));
 }
 
+TEST_F(Patterns, OfAFoilThatStandsUprightAreRefused) {
+  std::string text = cushion("T6", "{shape: circle, radius: 2 m}", "0.4 m",
+                             "  strips: {run: pattern, from: form, strips_per_foil: 3, direction: 0 deg}\n");
+  text.replace(text.find("0.89"), 4, "0.40"); // a half sphere at 400 Pa
+  write(text);
+  run(4);
+  EXPECT_THAT(log("strips"), ContainsRegex("w.yaml:13:[0-9]+: foil `upper`: the surface .* at .*: it must be "
+                                           "a graph over its plan to be cut; less pressure or more prestress"));
+}
+
 TEST_F(Patterns, FlatFoilIsCutWhereItIsNamed) {
   std::string text =
       cushion("T3", rectangle, "0.5 m",
