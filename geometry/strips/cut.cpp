@@ -314,17 +314,37 @@ Division divide(const Outline& outline, const RimStations& rim, std::span<const 
   return division;
 }
 
-Sheet fill_strips(const Outline& outline, const Division& division, int corners) {
+// A strip's outline and its elements. Foils that are cut alike (the two of a symmetric cushion) share them: most of the
+// time goes into filling.
+struct Filled {
+  std::vector<Vec2> ring;
+  std::vector<std::vector<Index>> runs;
+  meshing::CornerMesh mesh;
+};
+
+const meshing::CornerMesh& filled_once(std::vector<Filled>& known, std::vector<Vec2> ring, const Face& face,
+                                       int corners) {
+  constexpr double same = 1e-9; // m: of lines that were found apart
+  const auto found = std::ranges::find_if(known, [&](const Filled& other) {
+    return other.runs == face.runs &&
+           std::ranges::equal(other.ring, ring, [](const Vec2& a, const Vec2& b) { return (a - b).norm() < same; });
+  });
+  if (found != known.end()) return found->mesh;
+  meshing::CornerMesh mesh = meshing::filled(ring, face.runs, corners);
+  known.push_back({std::move(ring), face.runs, std::move(mesh)});
+  return known.back().mesh;
+}
+
+Sheet fill_strips(const Outline& outline, const Division& division, int corners, std::vector<Filled>& known) {
   Sheet sheet;
   sheet.points = outline.points;
   for (std::size_t strip = 0; strip < division.faces.size(); ++strip) {
     const Face& face = division.faces[strip];
-    const std::vector<Vec2> ring = places_of(face, outline);
-    const meshing::CornerMesh mesh = meshing::filled(ring, face.runs, corners);
-    const auto shift = static_cast<Index>(sheet.points.size() - ring.size());
-    sheet.points.insert(sheet.points.end(), mesh.points.begin() + static_cast<std::ptrdiff_t>(ring.size()),
-                        mesh.points.end());
-    for (const Index i : mesh.cells) sheet.cells.push_back(at(i) < ring.size() ? face.ring[at(i)] : i + shift);
+    const meshing::CornerMesh& mesh = filled_once(known, places_of(face, outline), face, corners);
+    const std::size_t ring = face.ring.size();
+    const auto shift = static_cast<Index>(sheet.points.size() - ring);
+    sheet.points.insert(sheet.points.end(), mesh.points.begin() + static_cast<std::ptrdiff_t>(ring), mesh.points.end());
+    for (const Index i : mesh.cells) sheet.cells.push_back(at(i) < ring ? face.ring[at(i)] : i + shift);
     sheet.strip_of_element.insert(sheet.strip_of_element.end(), mesh.cell_count(), static_cast<Index>(strip));
   }
   return sheet;
@@ -446,13 +466,14 @@ CutMesh cut(const Plan& plan, const Mesh& old, std::span<const Cut> foils, doubl
   const RimStations rim = rim_stations(plan, foils, size, even);
   Assembly assembly(plan, old, rim);
   CutMesh result;
+  std::vector<Filled> known;
   for (std::size_t f = 0; f < foils.size(); ++f) {
     try {
       const Outline outline = outline_of(plan, foils[f], rim, rim.ends[f], size, even);
       const Division division = divide(outline, rim, rim.ends[f]);
       check_size(division, outline, size, corners);
       check_width(plan, outline, size);
-      Sheet sheet = fill_strips(outline, division, corners);
+      Sheet sheet = fill_strips(outline, division, corners, known);
       const std::vector<std::vector<Index>> seams =
           assembly.add(old.blocks[f], foils[f].surface->chart, outline, sheet);
       CutFoil& foil = result.foils.emplace_back();

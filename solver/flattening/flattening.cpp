@@ -47,8 +47,8 @@ public:
   // stiffer than the strips.
   double penalty() const { return side_ > 0 ? 100 * std::sqrt(area_) / side_ : 0; }
 
-  // Value and, as asked for, gradient and Hessian parts: `take(unknowns, count, gradient, matrix)` for every element
-  // and tie; the matrix is column major with `stride` rows. None (infinite value) where a stress point is folded.
+  // Value, and `take(part)` for every element and tie; the matrix is column major with `stride` rows. None (infinite
+  // value) where a stress point is folded.
   struct Part {
     const Index* nodes;     // flat nodes
     int count;              // of them
@@ -56,14 +56,14 @@ public:
     const double* matrix;   // [2 count][stride], symmetric, upper triangle
   };
   template <class Take>
-  double evaluate(Points points, std::span<const double> multipliers, double penalty, bool exact, int stride,
+  double evaluate(Points points, std::span<const double> multipliers, double penalty, int stride,
                   const Take& take) const {
     double value = 0;
     geometry::dispatch(problem_.element, [&]<ElementType E>() {
-      value = evaluate_elements<geometry::nodes_per_element(E)>(points, exact, stride, take);
+      value = evaluate_elements<geometry::nodes_per_element(E)>(points, stride, take);
     });
     if (!std::isfinite(value)) return value;
-    return value + evaluate_ties(points, multipliers, penalty, exact, stride, take);
+    return value + evaluate_ties(points, multipliers, penalty, stride, take);
   }
 
   double tie(std::size_t k, Points points) const {
@@ -97,11 +97,11 @@ public:
 
 private:
   template <int N, class Take>
-  double evaluate_elements(Points points, bool exact, int stride, const Take& take) const {
+  double evaluate_elements(Points points, int stride, const Take& take) const {
     const auto per_element = at(reference_.points);
     const std::size_t elements = problem_.nodes->connectivity.size() / N;
     std::array<double, 2 * N> gradient;
-    std::vector<double> matrix(static_cast<std::size_t>(2 * N * stride));
+    std::vector<double> matrix(at(2 * N * stride));
     double value = 0;
     for (std::size_t e = 0; e < elements; ++e) {
       gradient.fill(0);
@@ -127,21 +127,8 @@ private:
         }
         Eigen::Map<Eigen::Matrix<double, 2 * N, 1>>(gradient.data()) += area * (b.transpose() * stress);
         const Eigen::Matrix<double, 3, 2 * N> wb = area * (weight_ * b);
-        Mat2 curvature = Mat2::Zero(); // -area g t g: of the second derivative of the strain
-        if (exact) {
-          Mat2 t;
-          t << stress[0], stress[2], stress[2], stress[1];
-          curvature = -area * (g * t * g);
-        }
-        for (int c = 0; c < N; ++c) {
-          for (int a = 0; a <= c; ++a) {
-            const double nn = dn[2 * a] * dn[2 * c] + dn[2 * a + 1] * dn[2 * c + 1];
-            for (int j = 0; j < 2; ++j) {
-              double* column = matrix.data() + (2 * c + j) * stride + 2 * a;
-              column[0] += b.col(2 * a).dot(wb.col(2 * c + j)) + nn * curvature(0, j);
-              column[1] += b.col(2 * a + 1).dot(wb.col(2 * c + j)) + nn * curvature(1, j);
-            }
-          }
+        for (int j = 0; j < 2 * N; ++j) {
+          for (int i = 0; i <= j; ++i) matrix[at(j * stride + i)] += b.col(i).dot(wb.col(j));
         }
       }
       take(Part{problem_.nodes->connectivity.data() + e * N, N, gradient.data(), matrix.data()});
@@ -150,10 +137,10 @@ private:
   }
 
   template <class Take>
-  double evaluate_ties(Points points, std::span<const double> multipliers, double penalty, bool exact, int stride,
+  double evaluate_ties(Points points, std::span<const double> multipliers, double penalty, int stride,
                        const Take& take) const {
     double value = 0;
-    std::vector<double> matrix(static_cast<std::size_t>(8 * stride));
+    std::vector<double> matrix(at(8 * stride));
     for (std::size_t k = 0; k < problem_.ties.size(); ++k) {
       const LengthTie& tie = problem_.ties[k];
       const Index nodes[4] = {tie.a[0], tie.a[1], tie.b[0], tie.b[1]};
@@ -162,24 +149,15 @@ private:
       const double force = multipliers[k] + penalty * c;
       value += (multipliers[k] + 0.5 * penalty * c) * c;
       Eigen::Matrix<double, 8, 1> direction = Eigen::Matrix<double, 8, 1>::Zero();
-      Eigen::Matrix<double, 8, 8> hessian = Eigen::Matrix<double, 8, 8>::Zero();
       for (int s = 0; s < count; s += 2) {
         const double sign = s == 0 ? 1 : -1;
         const Vec2 side = points[at(nodes[s + 1])] - points[at(nodes[s])];
-        const double length = side.norm();
-        const Vec2 u = side / length;
+        const Vec2 u = side.normalized();
         direction.segment<2>(2 * s) = -sign * u;
         direction.segment<2>(2 * s + 2) = sign * u;
-        if (!exact) continue;
-        const Mat2 bend = sign * force / length * (Mat2::Identity() - u * u.transpose());
-        hessian.block<2, 2>(2 * s, 2 * s) += bend;
-        hessian.block<2, 2>(2 * s + 2, 2 * s + 2) += bend;
-        hessian.block<2, 2>(2 * s, 2 * s + 2) -= bend;
-        hessian.block<2, 2>(2 * s + 2, 2 * s) -= bend;
       }
-      hessian += penalty * direction * direction.transpose();
       for (int j = 0; j < 2 * count; ++j) {
-        for (int i = 0; i <= j; ++i) matrix[static_cast<std::size_t>(j * stride + i)] = hessian(i, j);
+        for (int i = 0; i <= j; ++i) matrix[at(j * stride + i)] = penalty * direction[i] * direction[j];
       }
       direction *= force;
       take(Part{nodes, count, direction.data(), matrix.data()});
@@ -230,13 +208,12 @@ public:
     Flat flat;
     double extent = 0;
     for (const Vec2& p : points_) extent = std::max(extent, (p - points_.front()).norm());
+    double move = extent;
     while (flat.iterations < options_.max_iterations && !flat.converged) {
-      const double value = assemble(true);
+      const double value = assemble();
       if (!std::isfinite(value)) break;
       ++flat.iterations;
-      ++flat.factorizations;
-      if (!cholesky_.factorize(assembly_.pattern, values_)) {
-        assemble(false); // without the curvature of the strain: never negative
+      if (move > 1e-6 * extent) { // near the end the last factor is as good as a new one
         ++flat.factorizations;
         if (!cholesky_.factorize(assembly_.pattern, values_)) break;
       }
@@ -249,7 +226,7 @@ public:
         multipliers_[k] += penalty_ * c;
         missed = std::max(missed, std::abs(c));
       }
-      const double move = length * step.lpNorm<Eigen::Infinity>();
+      move = length * step.lpNorm<Eigen::Infinity>();
       flat.converged = move <= options_.tolerance * extent;
       if (report) report({flat.iterations, std::sqrt(2 * value / equations_.area()), move, missed});
     }
@@ -275,11 +252,11 @@ private:
     return linear::make_pattern(count_, unknowns, stride_);
   }
 
-  double assemble(bool exact) {
+  double assemble() {
     values_.assign(assembly_.pattern.row.size(), 0.0);
     gradient_ = VecX::Zero(count_);
     Index part_number = 0;
-    return equations_.evaluate(points_, multipliers_, penalty_, exact, stride_, [&](const Equations::Part& part) {
+    return equations_.evaluate(points_, multipliers_, penalty_, stride_, [&](const Equations::Part& part) {
       linear::scatter_add(assembly_.scatter, part_number++, part.matrix, values_);
       for (int a = 0; a < part.count; ++a) {
         for (int i = 0; i < 2; ++i) {
@@ -301,8 +278,7 @@ private:
           if (u >= 0) points_[i][static_cast<int>(c)] = before[i][static_cast<int>(c)] + length * step[u];
         }
       }
-      const double now =
-          equations_.evaluate(points_, multipliers_, penalty_, false, stride_, [](const Equations::Part&) {});
+      const double now = equations_.evaluate(points_, multipliers_, penalty_, stride_, [](const Equations::Part&) {});
       const double rounding = 1e-12 * (std::abs(value) + equations_.area() * 1e-12);
       if (now <= value + 1e-4 * length * slope + rounding) return length;
     }
@@ -360,14 +336,14 @@ Value evaluate(const Problem& problem, std::span<const Vec2> points, std::span<c
   const auto size = static_cast<Eigen::Index>(2 * points.size());
   Value value{0, VecX::Zero(size), MatX::Zero(size, size)};
   const int stride = std::max(2 * geometry::nodes_per_element(problem.element), 8);
-  value.value = equations.evaluate(points, multipliers, penalty, true, stride, [&](const Equations::Part& part) {
+  value.value = equations.evaluate(points, multipliers, penalty, stride, [&](const Equations::Part& part) {
     for (int j = 0; j < 2 * part.count; ++j) {
       const Eigen::Index column = 2 * part.nodes[j / 2] + j % 2;
       value.gradient[column] += part.gradient[j];
       for (int i = 0; i <= j; ++i) {
         const Eigen::Index row = 2 * part.nodes[i / 2] + i % 2;
-        value.hessian(row, column) += part.matrix[j * stride + i];
-        if (i != j) value.hessian(column, row) += part.matrix[j * stride + i];
+        value.matrix(row, column) += part.matrix[j * stride + i];
+        if (i != j) value.matrix(column, row) += part.matrix[j * stride + i];
       }
     }
   });

@@ -72,18 +72,19 @@ struct Flat {
 //   1/2 int e : weight : e dA over the form,   e = (I - G f f^T G) / 2,   f = d plane / d form,
 // under the ties. f f^T = C^-1 is quadratic in the coordinates, e the strain by which the wanted stress is missed
 // (first order), in the frame of the plane, so that orthotropy and compensation by directions keep to the roll. Related
-// to the least squares of Linhard (2009) with the flat shape as unknown. Newton's method with a line search that keeps
-// all stress points unfolded; ties by augmented Lagrangian. Every strip keeps the place and direction of `start`: three
+// to the least squares of Linhard (2009) with the flat shape as unknown. Gauss-Newton with a line search that keeps all
+// stress points unfolded (the second derivative of the strain leaves three to five more iterations, and a matrix that
+// is always positive); ties by augmented Lagrangian. Every strip keeps the place and direction of `start`: three
 // coordinates of two far nodes stay. Elements of `start` must not be turned over.
 Flat flatten(const Problem& problem, std::vector<Vec2> start, const Options& options = {},
              const std::function<void(const Iteration&)>& report = {});
 
-// Value, gradient [2 flat node + component] and Hessian (dense; for tests) of the function above with given multipliers
-// and a penalty on the ties.
+// Value, gradient [2 flat node + component] and Gauss-Newton matrix (dense; for tests) of the function above with given
+// multipliers and a penalty on the ties.
 struct Value {
   double value = 0;
   base::VecX gradient;
-  base::MatX hessian;
+  base::MatX matrix;
 };
 Value evaluate(const Problem& problem, std::span<const Vec2> points, std::span<const double> multipliers,
                double penalty);

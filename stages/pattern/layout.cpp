@@ -56,7 +56,10 @@ class Planner {
 public:
   Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil)
       : surface_(surface), settings_(settings),
-        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing} {}
+        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+        rough_(surface) {
+    rough_.fine = rough_.coarse;
+  }
 
   Layout given_curves() const {
     Layout layout;
@@ -123,17 +126,19 @@ private:
     return found;
   }
 
-  CuttingLine line(double from, double to) const {
-    return settings_.lines == workflow::CuttingLines::geodesic ? strips::geodesic_line(surface_, from, to)
-                                                               : strips::straight_line(surface_, from, to);
+  CuttingLine line(const strips::Surface& surface, double from, double to) const {
+    return settings_.lines == workflow::CuttingLines::geodesic ? strips::geodesic_line(surface, from, to)
+                                                               : strips::straight_line(surface, from, to);
   }
 
-  std::vector<CuttingLine> lines_at(const std::vector<double>& offsets, double direction) const {
+  std::vector<CuttingLine> lines_at(const strips::Surface& surface, const std::vector<double>& offsets,
+                                    double direction) const {
     std::vector<CuttingLine> lines;
     for (const double offset : offsets) {
       const std::vector<double> crossings =
           geometry::rim_crossings(surface_.plan, offset * across(direction), along(direction));
-      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2) lines.push_back(line(crossings[k], crossings[k + 1]));
+      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+        lines.push_back(line(surface, crossings[k], crossings[k + 1]));
     }
     if (const std::string crossing = strips::crossing(lines); !crossing.empty()) {
       throw base::GeometryError(
@@ -143,7 +148,7 @@ private:
   }
 
   Trial measure(const std::vector<CuttingLine>& lines, double direction) const {
-    const strips::Cut cut{&surface_, lines};
+    const std::vector<strips::Cut> cut{{&surface_, lines}};
     geometry::Mesh names; // the cut keeps names and element type
     names.element = geometry::ElementType::T3;
     names.blocks.push_back({foil_, geometry::BlockKind::foil, {}});
@@ -151,8 +156,8 @@ private:
     const double area = geometry::area(surface_.plan);
     double size = std::sqrt(area / 500);
     // three elements across the narrowest strip, as far as the mesh itself has them
-    size = std::max(std::min(size, std::sqrt(area) / static_cast<double>(4 * (lines.size() + 1))), surface_.size);
-    const strips::CutMesh mesh = strips::cut(surface_.plan, names, {&cut, 1}, size);
+    size = std::max(std::min(size, std::sqrt(area) / static_cast<double>(4 * (lines.size() + 1))), element_size(cut));
+    const strips::CutMesh mesh = strips::cut(surface_.plan, names, cut, size);
     Wanted wanted;
     wanted.direction = direction;
     wanted.tied = false;
@@ -182,15 +187,17 @@ private:
     std::vector<double> offsets;
     for (int k = 0; k <= count; ++k) offsets.push_back(low + (high - low) * k / count);
     Layout layout{direction, {}, fmt::format("{} strips at {:.1f} degrees", count, direction * degrees)};
-    for (int round = 0;; ++round) {
-      layout.lines = lines_at({offsets.begin() + 1, offsets.end() - 1}, direction);
-      if (round == 3) break;
-      const std::vector<double> width = measure(layout.lines, direction).width;
+    constexpr int rounds = 3;
+    const auto inner = [&] { return std::vector<double>(offsets.begin() + 1, offsets.end() - 1); };
+    for (int round = 0; round < rounds; ++round) {
+      std::vector<double> width = measure(lines_at(rough_, inner(), direction), direction).width;
+      std::reverse(width.begin(), width.end()); // strips are numbered from the left, where offsets are largest
       if (width.size() != static_cast<std::size_t>(count)) break; // a plan with bays: strips in parts
       const auto [least, most] = std::minmax_element(width.begin(), width.end());
       if (*most - *least < 0.005 * *most) break;
       offsets = balanced(offsets, width);
     }
+    layout.lines = lines_at(surface_, inner(), direction);
     return layout;
   }
 
@@ -232,6 +239,7 @@ private:
   const workflow::PatternSettings& settings_;
   std::string foil_;
   fabrication::Allowances allowances_;
+  strips::Surface rough_; // with the coarse copy only: for the widths of trials
 };
 
 } // namespace
@@ -241,6 +249,29 @@ Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& 
   if (settings.curves.contains(foil)) return planner.given_curves();
   if (settings.direction) return planner.in_direction(*settings.direction);
   return planner.best_direction();
+}
+
+double element_size(const std::vector<strips::Cut>& cuts) {
+  constexpr double across = 1.6; // elements between two lines: two when rounded
+  const double size = cuts.front().surface->size;
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (const strips::Cut& cut : cuts) {
+    std::vector<std::vector<Vec2>> lines;
+    for (const CuttingLine& line : cut.lines) {
+      auto& points = lines.emplace_back();
+      const std::size_t step = std::max<std::size_t>(line.plan.size() / 64, 1);
+      for (std::size_t k = 0; k < line.plan.size(); k += step) points.push_back(line.plan[k]);
+      points.push_back(line.plan.back());
+    }
+    for (std::size_t a = 0; a < lines.size(); ++a) {
+      for (std::size_t b = a + 1; b < lines.size(); ++b) {
+        for (const Vec2& x : lines[a]) {
+          for (const Vec2& y : lines[b]) narrowest = std::min(narrowest, (x - y).norm());
+        }
+      }
+    }
+  }
+  return std::clamp(narrowest / across, size / 2, size);
 }
 
 } // namespace pneuma::stages::pattern

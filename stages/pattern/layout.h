@@ -26,4 +26,8 @@ struct Layout {
 Layout lay_out(const geometry::strips::Surface& surface, const pipeline::workflow::PatternSettings& settings,
                const std::string& foil);
 
+// Size of elements for all foils' cutting lines, m in plan: that of the mesh, or as much smaller, down to its half, as
+// the narrowest strip needs for two elements across.
+double element_size(const std::vector<geometry::strips::Cut>& cuts);
+
 } // namespace pneuma::stages::pattern

@@ -120,8 +120,13 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
     cuts[b].lines = layout.lines;
     welded.wanted[b] = wanted_of(start, settings, b, layout.direction);
   }
+  const double size = element_size(cuts);
+  if (size < surfaces.front().size) {
+    base::say(
+        fmt::format("elements of {:.3g} m instead of {:.3g} m, for the narrowest strip", size, surfaces.front().size));
+  }
   strips::CutMesh cut = at_place(cutting_place(start, mesh.blocks[chosen.front()].name), [&] {
-    return strips::cut(start.workflow.cushion.plan, mesh, cuts, surfaces.front().size);
+    return strips::cut(start.workflow.cushion.plan, mesh, cuts, size);
   });
   welded.state = transferred(start, cut);
   welded.cuts = std::move(cut.foils);
