@@ -236,7 +236,8 @@ std::vector<Surface> surfaces_of(const State& state, const Shown& what, const Op
     } else if (what.location == Location::point) {
       at_nodes = what.values;
     }
-    surfaces.push_back(surface_of(mesh, mesh.blocks[b], lifted, at_nodes, of_elements, divisions));
+    surfaces.push_back(
+        surface_of(mesh, mesh.blocks[b], lifted, at_nodes, of_elements, state.foils[b].strip_of_element, divisions));
   }
   return surfaces;
 }
@@ -514,6 +515,7 @@ void draw(const State& state, const Options& options) {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     add_foil(renderer, surfaces[i], has_scale ? map.Get() : nullptr, i);
     if (opacity > 0) add_lines(renderer, surfaces[i].edges, nearer, line, opacity);
+    add_lines(renderer, surfaces[i].seams, nearer, 1.5 * line, 0.9);
     add_lines(renderer, surfaces[i].borders, nearer, 2 * line, 1);
   }
   if (has_scale) add_scale(renderer, what, map, options);

@@ -108,7 +108,8 @@ const char* usage() {
          "  --size WxH           pixels [1400x900]\n"
          "  --title TEXT         above the picture [none]\n"
          "  --component N        component of a field that has several, from 0 [magnitude]\n"
-         "  --range A B          ends of the colour scale in the field's unit [smallest and largest value]\n"
+         "  --range A B          ends of the colour scale in the field's stored unit (SI: Pa, not MPa) [smallest and "
+         "largest value]\n"
          "  --explode METRES     draw neighbouring foils this much further apart [0]\n"
          "  --view iso|top|side  [iso]\n"
          "  --warp FACTOR        draw displacements this many times as large [1]";

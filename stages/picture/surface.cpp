@@ -92,21 +92,28 @@ std::vector<Vec3> node_normals(const geometry::Mesh& mesh, const geometry::Block
 }
 
 template <ElementType E>
-void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions, int n,
-               Surface& surface) {
+void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
+               const std::vector<Index>& strip_of_element, int n, Surface& surface) {
   constexpr int corners = geometry::corners_per_element(E);
   struct Side {
     std::vector<Vec3> line;
     int elements = 0;
+    Index strip = 0; // of the first element
+    bool seam = false;
   };
   std::map<std::pair<Index, Index>, Side> sides;
   for (Index e = 0; e < mesh.element_count(block); ++e) {
     const auto nodes = mesh.element_nodes(block, e);
+    const Index strip = strip_of_element.empty() ? 0 : strip_of_element[static_cast<std::size_t>(e)];
     for (int k = 0; k < corners; ++k) {
       const int next = (k + 1) % corners;
       Side& side =
           sides[std::minmax(Index{nodes[static_cast<std::size_t>(k)]}, Index{nodes[static_cast<std::size_t>(next)]})];
-      if (++side.elements > 1) continue;
+      if (++side.elements > 1) {
+        side.seam = strip != side.strip;
+        continue;
+      }
+      side.strip = strip;
       const Vec2 from = node_place<E>(k);
       const Vec2 to = node_place<E>(next);
       for (int i = 0; i <= n; ++i) {
@@ -121,13 +128,15 @@ void add_edges(const geometry::Mesh& mesh, const geometry::Block& block, const s
     }
   }
   for (auto& [ends, side] : sides) {
-    (side.elements > 1 ? surface.edges : surface.borders).push_back(std::move(side.line));
+    auto& lines = side.seam ? surface.seams : side.elements > 1 ? surface.edges : surface.borders;
+    lines.push_back(std::move(side.line));
   }
 }
 
 template <ElementType E>
 Surface make_surface(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                     const std::vector<double>& node_values, const std::vector<double>& element_values, int n) {
+                     const std::vector<double>& node_values, const std::vector<double>& element_values,
+                     const std::vector<Index>& strip_of_element, int n) {
   const Division division = divide<E>(n);
   const std::vector<Vec3> normals = node_normals<E>(mesh, block, positions);
   Surface surface;
@@ -152,16 +161,17 @@ Surface make_surface(const geometry::Mesh& mesh, const geometry::Block& block, c
     }
     for (const auto& [a, b, c] : division.triangles) surface.triangles.push_back({first + a, first + b, first + c});
   }
-  add_edges<E>(mesh, block, positions, n, surface);
+  add_edges<E>(mesh, block, positions, strip_of_element, n, surface);
   return surface;
 }
 
 } // namespace
 
 Surface surface_of(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                   const std::vector<double>& node_values, const std::vector<double>& element_values, int divisions) {
+                   const std::vector<double>& node_values, const std::vector<double>& element_values,
+                   const std::vector<Index>& strip_of_element, int divisions) {
   return geometry::dispatch(mesh.element, [&]<ElementType E>() {
-    return make_surface<E>(mesh, block, positions, node_values, element_values, divisions);
+    return make_surface<E>(mesh, block, positions, node_values, element_values, strip_of_element, divisions);
   });
 }
 

@@ -19,11 +19,13 @@ struct Surface {
   std::vector<std::array<Index, 3>> triangles;
   std::vector<std::vector<Vec3>> edges;   // between elements, each once, as polygons
   std::vector<std::vector<Vec3>> borders; // those of one element only
+  std::vector<std::vector<Vec3>> seams;   // between elements of different strips
 };
 
 // Quadratic elements are divided by their own shape functions. `positions`: [node]; `values`: [node], or [element of
-// this block] (each element then has one colour), or empty.
+// this block] (each element then has one colour), or empty. `strip_of_element`: of a foil welded from strips, or empty.
 Surface surface_of(const geometry::Mesh& mesh, const geometry::Block& block, const std::vector<Vec3>& positions,
-                   const std::vector<double>& node_values, const std::vector<double>& element_values, int divisions);
+                   const std::vector<double>& node_values, const std::vector<double>& element_values,
+                   const std::vector<Index>& strip_of_element, int divisions);
 
 } // namespace pneuma::stages::picture
