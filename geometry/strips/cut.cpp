@@ -482,7 +482,7 @@ CutMesh cut(const Plan& plan, const Mesh& old, std::span<const Cut> foils, doubl
       for (std::size_t l = 0; l < seams.size(); ++l)
         foil.seams.push_back({division.beside[l][0], division.beside[l][1], seams[l]});
     } catch (const GeometryError& error) {
-      throw GeometryError(fmt::format("{}: {}", old.blocks[f].name, error.what()));
+      throw GeometryError(fmt::format("foil `{}`: {}", old.blocks[f].name, error.what()));
     }
   }
   result.mesh = assembly.take();

@@ -130,6 +130,15 @@ std::string seams_table(const std::vector<SeamFigures>& seams) {
   return table;
 }
 
+struct Files {
+  std::filesystem::path dxf, svg, strips, seams;
+};
+
+Files files_of(const std::string& foil, const std::filesystem::path& folder) {
+  return {folder / (foil + ".dxf"), folder / (foil + ".svg"), folder / (foil + "_strips.csv"),
+          folder / (foil + "_seams.csv")};
+}
+
 void add_sums(Fabrication& result) {
   for (const StripFigures& strip : result.strips) {
     result.net_area += strip.net_area;
@@ -146,7 +155,7 @@ void add_sums(Fabrication& result) {
 } // namespace
 
 Fabrication fabricate(const std::string& foil, std::span<const StripSheet> strips, const Allowances& allowances,
-                      const RollSheet& roll, const std::filesystem::path& folder) {
+                      const RollSheet& roll) {
   Fabrication result;
   result.seams = seams_of(strips);
   const std::vector<FlatStrip> flats = with_mates(strips, result.seams);
@@ -161,18 +170,33 @@ Fabrication fabricate(const std::string& foil, std::span<const StripSheet> strip
   result.roll_width = roll.may_widen ? std::max(roll.width, roll_width_for(cuts, roll.selvedge)) : roll.width;
   result.nesting = nest(cuts, names, result.roll_width, roll.selvedge, roll.gap);
 
-  pipeline::drawing::Drawing drawing = {foil, strip_layers(), {}, {}};
+  pipeline::drawing::Drawing& drawing = result.drawing;
+  drawing = {foil, strip_layers(), {}, {}};
   draw_roll(result.nesting.length, result.roll_width, roll.selvedge, drawing);
   const double notch_length = allowances.seam > 0 ? allowances.seam : notch_without_allowance;
   for (const Placement& placement : result.nesting.placements) {
     const auto i = static_cast<std::size_t>(placement.strip);
     draw_strip(flats[i], cuts[i], placement, notch_length, drawing);
   }
-  write_dxf(drawing, folder / (foil + ".dxf"));
-  write_svg(drawing, folder / (foil + ".svg"));
-  PendingFile(folder / (foil + "_strips.csv"), strips_table(flats, result)).publish();
-  PendingFile(folder / (foil + "_seams.csv"), seams_table(result.seams)).publish();
+  result.strips_table = strips_table(flats, result);
+  result.seams_table = seams_table(result.seams);
   return result;
+}
+
+void write_sheets(const std::string& foil, const Fabrication& made, const std::filesystem::path& folder) {
+  const Files files = files_of(foil, folder);
+  write_dxf(made.drawing, files.dxf);
+  write_svg(made.drawing, files.svg);
+  PendingFile(files.strips, made.strips_table).publish();
+  PendingFile(files.seams, made.seams_table).publish();
+}
+
+void remove_sheets(const std::string& foil, const std::filesystem::path& folder) {
+  const Files files = files_of(foil, folder);
+  for (const std::filesystem::path& file : {files.dxf, files.svg, files.strips, files.seams}) {
+    std::error_code ignored; // most often there is none
+    std::filesystem::remove(file, ignored);
+  }
 }
 
 } // namespace pneuma::stages::pattern

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/fabrication/fabrication.h"
+#include "pipeline/drawing/drawing.h"
 
 namespace pneuma::stages::pattern {
 
@@ -53,15 +54,20 @@ struct Fabrication {
   double weld_length = 0;             // of all seams, m
   double seam_mismatch_max = 0;       // m
   double mismatch_per_length_max = 0; // m/m
+  pipeline::drawing::Drawing drawing; // layers CUT, NET, NOTCH, TEXT, WARP, DIM; the strips where they lie on the roll
+  std::string strips_table, seams_table; // CSV
 };
 
-// Cuts the strips of a foil out of a roll and writes into `folder` what a manufacturer needs: `<foil>.dxf` and
-// `<foil>.svg` (layers CUT, NET, NOTCH, TEXT, WARP, DIM; the strips where they lie on the roll), `<foil>_strips.csv`
-// and
-// `<foil>_seams.csv`. Throws GeometryError with the strip's name (see cut_strip, nest), StateError where a file cannot
-// be written; files are written last, each whole or not at all.
+// Cuts the strips of a foil out of a roll and draws what a manufacturer needs. Throws GeometryError with the strip's
+// name (see cut_strip, nest).
 Fabrication fabricate(const std::string& foil, std::span<const StripSheet> strips,
-                      const geometry::fabrication::Allowances& allowances, const RollSheet& roll,
-                      const std::filesystem::path& folder);
+                      const geometry::fabrication::Allowances& allowances, const RollSheet& roll);
+
+// Writes `<foil>.dxf`, `<foil>.svg`, `<foil>_strips.csv` and `<foil>_seams.csv` into `folder`, each whole or not at
+// all. Throws StateError where a file cannot be written.
+void write_sheets(const std::string& foil, const Fabrication& made, const std::filesystem::path& folder);
+
+// Removes what an earlier run has written of a foil that is not cut any more.
+void remove_sheets(const std::string& foil, const std::filesystem::path& folder);
 
 } // namespace pneuma::stages::pattern

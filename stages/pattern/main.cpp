@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // pneuma-pattern: from the form-found cushion to flat strips that weld up to it, and to the drawings to cut them by.
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -66,7 +67,6 @@ Layout lay_out_at_place(const common::Start& start, const workflow::PatternSetti
     return lay_out(surface, settings, foil);
   } catch (const base::GeometryError& error) {
     std::string message = error.what();
-    if (message.starts_with(foil + ": ")) message.erase(0, foil.size() + 2);
     const std::string name = fmt::format("foil `{}`: ", foil);
     if (!message.starts_with(name)) message = name + message;
     if (!settings.strips_per_foil && settings.roll_given && !settings.curves.contains(foil)) {
@@ -106,7 +106,9 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
   const geometry::Mesh& mesh = start.state.mesh;
   std::vector<strips::Surface> surfaces;
   for (const geometry::Block& block : mesh.blocks) {
-    surfaces.push_back(strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes));
+    surfaces.push_back(at_place(
+        fmt::format("{}foil `{}`: ", common::place(start.workflow, "stages." + start.stage().id + ".from"), block.name),
+        [&] { return strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes); }));
   }
   std::vector<strips::Cut> cuts;
   for (const strips::Surface& surface : surfaces) cuts.push_back({&surface, {}});
@@ -124,9 +126,8 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
     base::say(
         fmt::format("elements of {:.3g} m instead of {:.3g} m, for the narrowest strip", size, surfaces.front().size));
   }
-  strips::CutMesh cut = at_place(cutting_place(start, mesh.blocks[chosen.front()].name), [&] {
-    return strips::cut(start.workflow.cushion.plan, mesh, cuts, size);
-  });
+  strips::CutMesh cut = at_place(cutting_place(start, mesh.blocks[chosen.front()].name),
+                                 [&] { return strips::cut(start.workflow.cushion.plan, mesh, cuts, size); });
   welded.state = transferred(start, cut);
   welded.cuts = std::move(cut.foils);
   base::parallel_chunks(start.arguments.threads, chosen.size(), [&](std::size_t i) {
@@ -144,7 +145,7 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
   return welded;
 }
 
-// The drawings and tables of one foil, beside the state.
+// What a manufacturer gets of one foil.
 Fabrication draw(const common::Start& start, const workflow::PatternSettings& settings, const Welded& welded,
                  std::size_t b, const std::vector<StripQuality>& quality) {
   std::vector<StripSheet> sheets;
@@ -156,8 +157,21 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
   return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
     return fabricate(welded.state.mesh.blocks[b].name, sheets,
                      {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
-                     {roll.width, roll.selvedge, 0.01, !settings.roll_given}, start.arguments.out.parent_path());
+                     {roll.width, roll.selvedge, 0.01, !settings.roll_given});
   });
+}
+
+// Drawings and tables beside the state, after all foils have theirs; none of an earlier run stay that do not belong.
+void publish(const common::Start& start, const std::map<std::string, Fabrication>& made) {
+  const std::filesystem::path folder = start.arguments.out.parent_path();
+  for (const workflow::FoilSettings& foil : start.workflow.cushion.foils) {
+    const auto found = made.find(foil.name);
+    if (found != made.end()) {
+      write_sheets(foil.name, found->second, folder);
+    } else {
+      remove_sheets(foil.name, folder);
+    }
+  }
 }
 
 int run(int argc, char** argv) {
@@ -178,12 +192,13 @@ int run(int argc, char** argv) {
   summary.set("verdict", "converged");
   int iterations = 0;
   int factorizations = 0;
+  std::map<std::string, Fabrication> sheets; // of each foil
   for (const std::size_t b : chosen) {
     const std::string& name = welded.state.mesh.blocks[b].name;
     iterations = std::max(iterations, welded.flat[b]->flat.iterations);
     factorizations += welded.flat[b]->flat.factorizations;
     const std::vector<StripQuality> quality = quality_of(welded, b);
-    const Fabrication made = draw(start, settings, welded, b, quality);
+    const Fabrication& made = sheets[name] = draw(start, settings, welded, b, quality);
     report_strips(quality, made, *welded.wanted[b], name, summary);
     if (made.roll_width > settings.roll.width) {
       const std::string warning = fmt::format("the strips of foil `{}` need a roll of {:.0f} mm, {:.0f} mm are usual: "
@@ -205,6 +220,7 @@ int run(int argc, char** argv) {
   welded.state.provenance.converged = true;
   welded.state.provenance.verdict = "converged";
   welded.state.provenance.load_factor = 1;
+  publish(start, sheets);
   pipeline::state::write_state(welded.state, start.arguments.out);
   common::summarize_mesh(welded.state, summary);
   summary.set("timing.total", clock.seconds());

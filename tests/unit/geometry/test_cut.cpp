@@ -372,7 +372,7 @@ protected:
 
 TEST_F(Refusal, OfTooManyStripsSaysWhereAndWhatWouldDo) {
   const std::string message = refusal([&] { cushion.cut_along({at(0), at(0.5), at(1)}, {}, 0.4); });
-  EXPECT_THAT(message, HasSubstr("upper: a strip is 0.5 m wide at the rim behind (0"));
+  EXPECT_THAT(message, HasSubstr("foil `upper`: a strip is 0.5 m wide at the rim behind (0"));
   EXPECT_THAT(message, HasSubstr("at most 0.333 m"));
 }
 
@@ -381,7 +381,7 @@ TEST_F(Refusal, OfLinesThatComeTogetherInTheMiddle) {
   const std::string message = refusal([&] {
     cushion.cut_along({at(0), given_line(cushion.surfaces[0], bow)}, {}, 0.3);
   });
-  EXPECT_THAT(message, HasSubstr("upper: lines 1 and 2 come as near as 0.3"));
+  EXPECT_THAT(message, HasSubstr("foil `upper`: lines 1 and 2 come as near as 0.3"));
 }
 
 TEST_F(Refusal, OfLinesThatCross) {

@@ -355,6 +355,26 @@ TEST_F(Patterns, AreTheSameBytesEveryTimeAndNotMadeTwice) {
   for (const std::string& name : names) EXPECT_TRUE(first[name] == bytes_of(out("strips") / name)) << name;
 }
 
+TEST_F(Patterns, OfAFoilThatIsNotCutAnyMoreDoNotLieAround) {
+  const auto stage = [&](const std::string& more) {
+    write(cushion("T3", rectangle, "0.5 m",
+                  "  strips: {run: pattern, from: form, lines: straight, direction: 0 deg, " + more + "}\n"));
+  };
+  stage("strips_per_foil: 2");
+  run();
+  EXPECT_TRUE(fs::exists(out("strips") / "lower.dxf"));
+  const std::string drawing = bytes_of(out("strips") / "upper.dxf");
+  stage("strips_per_foil: 2, roll: {width: 1.2 m, weld: 10 mm, selvedge: 10 mm}"); // fails: what was made stays
+  run(4);
+  EXPECT_EQ(bytes_of(out("strips") / "upper.dxf"), drawing);
+  stage("strips_per_foil: 3, foils: [upper]");
+  run();
+  EXPECT_NE(bytes_of(out("strips") / "upper.dxf"), drawing);
+  for (const char* name : {"lower.dxf", "lower.svg", "lower_strips.csv", "lower_seams.csv"}) {
+    EXPECT_FALSE(fs::exists(out("strips") / name)) << name;
+  }
+}
+
 TEST_F(Patterns, SewnCushionWithoutPressureCarriesTheStressThatSewingLeaves) {
   for (const char* element : {"T3", "T6"}) {
     for (const char* gravity : {"on", "off"}) {
@@ -382,29 +402,32 @@ TEST_F(Patterns, ThatCannotBeAreRefusedWithPlaceAndRemedyAndTheirSiblingsRun) {
     return "  " + id + ": {run: pattern, from: form, " + settings + "}\n";
   };
   const std::string straight = ", foils: [upper], lines: straight, direction: 0 deg";
-  const std::string roll = "roll: {width: 0.5 m, weld: 12 mm, selvedge: 10 mm}";
+  const std::string roll = "roll: {width: 0.3 m, weld: 12 mm, selvedge: 10 mm}";
   write(cushion(
       "T3", rectangle, "0.4 m",
-      stage("many", "strips_per_foil: 40" + straight) + stage("some", "strips_per_foil: 6" + straight) +
+      stage("many", "strips_per_foil: 40" + straight) + stage("some", "strips_per_foil: 12" + straight) +
           stage("crossing", "curves: {upper: [[[-1 m, -1.5 m], [1 m, 1.5 m]], [[1 m, -1.5 m], [-1 m, 1.5 m]]]}") +
           stage("leaving", "curves: {all: [[[-1 m, -1.5 m], [-1 m, 3 m], [-1.2 m, 1.5 m]]]}") +
           stage("ending", "curves: {upper: [[[-1 m, -1 m], [-1 m, 1.5 m]]]}") + stage("narrow", roll + straight) +
           stage("fixed", "strips_per_foil: 2, " + roll + straight) +
           "  welded: {run: inflate, from: many, gauge_pressure: {main: 400 Pa}}\n"
-          "  sibling: {run: inflate, from: form, reference: prestressed, gauge_pressure: {main: 400 Pa}}\n"));
+          "  sibling: {run: inflate, from: form, reference: prestressed, gauge_pressure: {main: 400 Pa}}\n" +
+          stage("meeting", "curves: {upper: [[[-1 m, -1.5 m], [-1 m, 1.5 m]], [[-0.95 m, -1.5 m], [0.5 m, 1.5 m]]]}")));
   const Outcome outcome = pneuma("run w.yaml");
   EXPECT_EQ(outcome.code, 4) << outcome.text;
   const std::map<std::string, std::string> refusals = {
-      {"many",
-       "w.yaml:13:[0-9]+: foil `upper`: two lines .* end at \\(-2, .*\\) m.*take fewer strips, or smaller elements"},
-      {"some", "w.yaml:14:[0-9]+: foil `upper`: .*too narrow for two elements of 0.44. m: fewer strips, or elements of "
-               "at most 0.3.* m, would do"},
+      {"many", "w.yaml:13:[0-9]+: foil `upper`: .*too narrow for two elements of 0.22. m: fewer strips, or elements of "
+               "at most 0.05 m, would do"},
+      {"some", "w.yaml:14:[0-9]+: foil `upper`: .*too narrow for two elements of 0.22. m: fewer strips, or elements of "
+               "at most 0.1.* m, would do"},
+      {"meeting", "w.yaml:22:[0-9]+: two lines of one foil end at \\(-0.95, -1.5\\) m, or within a third of "
+                  "the mesh size .*: move one of them, take fewer strips, or smaller elements"},
       {"crossing", "w.yaml:15:[0-9]+: foil `upper`: lines 1 and 2 cross or touch near \\(0, 0\\)"},
       {"leaving",
        "w.yaml:16:[0-9]+: foil `upper`: the line from .* leaves the plan at \\(-1, 1.5.*\\).*: move its ends"},
       {"ending", "w.yaml:17:[0-9]+: foil `upper`: the line's end \\(-1, -1\\).* lies 0.5 m from the rim.* end it at"},
       {"narrow", "w.yaml:18:[0-9]+: foil `upper`: .*too narrow for two elements .*a wider roll for fewer"},
-      {"fixed", "w.yaml:19:[0-9]+: too wide for a roll of 0.500 m .*: upper-1 .*; a roll of 1.6.* m would do, or more "
+      {"fixed", "w.yaml:19:[0-9]+: too wide for a roll of 0.300 m .*: upper-1 .*; a roll of 1.6.* m would do, or more "
                 "strips"}};
   for (const auto& [id, refusal] : refusals) {
     EXPECT_THAT(log(id), ContainsRegex(refusal)) << id;
@@ -438,6 +461,16 @@ TEST_F(Patterns, AskedForInTheWrongPlaceAreRefusedThere) {
   const Outcome outcome = pneuma("run w.yaml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.text, ContainsRegex("w.yaml:13:[0-9]+: all foils are flat: there is nothing to cut"));
+}
+
+TEST_F(Patterns, OfAFoilThatStandsUprightAreRefused) {
+  std::string text = cushion("T6", "{shape: circle, radius: 2 m}", "0.4 m",
+                             "  strips: {run: pattern, from: form, strips_per_foil: 3, direction: 0 deg}\n");
+  text.replace(text.find("0.89"), 4, "0.40"); // a half sphere at 400 Pa
+  write(text);
+  run(4);
+  EXPECT_THAT(log("strips"), ContainsRegex("w.yaml:13:[0-9]+: foil `upper`: the surface .* at .*: it must be "
+                                           "a graph over its plan to be cut; less pressure or more prestress"));
 }
 
 TEST_F(Patterns, FlatFoilIsCutWhereItIsNamed) {

@@ -26,6 +26,13 @@ using geometry::fabrication::FlatStrip;
 using geometry::fabrication::Side;
 using testing::HasSubstr;
 
+Fabrication fabricate_into(const std::filesystem::path& folder, std::span<const StripSheet> strips,
+                           const Allowances& given, const RollSheet& roll) {
+  Fabrication made = fabricate("upper", strips, given, roll);
+  write_sheets("upper", made, folder);
+  return made;
+}
+
 constexpr double radius = 2.4; // of the foil's plan, m
 const Allowances allowances = {0.006, 0.03, 0.5};
 
@@ -72,7 +79,7 @@ std::vector<StripSheet> disc() {
 class PatternOfADisc : public testing::Test {
 protected:
   TemporaryFolder folder;
-  const Fabrication result = fabricate("upper", disc(), allowances, {}, folder.path());
+  const Fabrication result = fabricate_into(folder.path(), disc(), allowances, {});
 
   std::vector<std::vector<std::string>> table(const std::string& name) const {
     std::vector<std::vector<std::string>> rows;
@@ -199,7 +206,7 @@ TEST_F(PatternOfADisc, HasATableOfSeams) {
 
 TEST_F(PatternOfADisc, IsTheSameEveryTime) {
   const TemporaryFolder again;
-  fabricate("upper", disc(), allowances, {}, again.path());
+  fabricate_into(again.path(), disc(), allowances, {});
   for (const char* name : {"upper.dxf", "upper.svg", "upper_strips.csv", "upper_seams.csv"}) {
     EXPECT_EQ(bytes_of(again / name), bytes_of(folder / name)) << name;
   }
@@ -209,14 +216,14 @@ TEST(Fabrication, RefusesANarrowRollUnlessItMayWiden) {
   const TemporaryFolder folder;
   const RollSheet narrow = {1.2, 0.01, 0.01, false};
   try {
-    fabricate("upper", disc(), allowances, narrow, folder.path());
+    fabricate_into(folder.path(), disc(), allowances, narrow);
     FAIL();
   } catch (const base::GeometryError& error) {
     EXPECT_THAT(error.what(), HasSubstr("too wide for a roll of 1.200 m"));
     EXPECT_THAT(error.what(), HasSubstr("U1 (1.23"));
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  const Fabrication result = fabricate("upper", disc(), allowances, {1.2, 0.01, 0.01, true}, folder.path());
+  const Fabrication result = fabricate_into(folder.path(), disc(), allowances, {1.2, 0.01, 0.01, true});
   EXPECT_NEAR(result.roll_width, result.strips[0].cut_width + 0.02, 1e-6);
 }
 
@@ -224,7 +231,7 @@ TEST(Fabrication, QuotesNamesInTables) {
   const TemporaryFolder folder;
   std::vector<StripSheet> one = {strip("a \"b\", c", {})};
   one[0].flat.sides = {rim("south", {-1, -0.5}, {1, -0.5}), {"north", false, "", false, 0, {{1, -0.5}, {-1, -0.5}}}};
-  fabricate("upper", one, allowances, {3, 0, 0, true}, folder.path());
+  fabricate_into(folder.path(), one, allowances, {3, 0, 0, true});
   EXPECT_THAT(bytes_of(folder / "upper_strips.csv"), HasSubstr("\n\"a \"\"b\"\", c\","));
 }
 
