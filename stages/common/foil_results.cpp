@@ -146,7 +146,8 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
     gauss(r.strain2, strain.smaller);
     const double area = membrane.reference.area[i];
     total += area;
-    if (stress.smaller < 0) {
+    constexpr double rounding = 1; // Pa
+    if (stress.smaller < -rounding) {
       r.compressed_area += area;
       r.compression = std::max(r.compression, -stress.smaller);
     }

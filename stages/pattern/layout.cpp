@@ -10,6 +10,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/rim.h"
+#include "stages/pattern/fabrication.h"
 #include "stages/pattern/flat_foil.h"
 
 namespace pneuma::stages::pattern {
@@ -89,9 +90,9 @@ public:
         const Trial trial = measure(layout.lines, direction);
         const bool by_waste = settings_.chosen_by == workflow::ChosenBy::waste;
         const double score = by_waste ? trial.waste : trial.distortion;
-        if (score >= least * (1 - 1e-3)) continue; // the first of equals
+        if (score >= least * (1 - 1e-3) - 1e-6) continue; // the first of equals
         least = score;
-        layout.reason += fmt::format(", best of the edges' directions by {} ({:.2f} %)",
+        layout.reason += fmt::format(", best of the edges' directions by {} (about {:.2f} %)",
                                      by_waste ? "waste" : "distortion", 100 * score);
         best = std::move(layout);
       } catch (const base::GeometryError& error) {
@@ -137,8 +138,14 @@ private:
     for (const double offset : offsets) {
       const std::vector<double> crossings =
           geometry::rim_crossings(surface_.plan, offset * across(direction), along(direction));
-      for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
-        lines.push_back(line(surface, crossings[k], crossings[k + 1]));
+      try {
+        for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+          lines.push_back(line(surface, crossings[k], crossings[k + 1]));
+      } catch (const base::GeometryError& error) {
+        throw base::GeometryError(
+            fmt::format("foil `{}`: {}; another direction or number of strips, or `curves`, puts it elsewhere", foil_,
+                        error.what()));
+      }
     }
     if (const std::string crossing = strips::crossing(lines); !crossing.empty()) {
       throw base::GeometryError(
@@ -165,17 +172,14 @@ private:
     Trial trial;
     std::vector<fabrication::CutStrip> cuts;
     std::vector<std::string> strip_names;
-    double used = 0;
-    double net = 0;
     for (const fabrication::FlatStrip& outline : outlines(flat, mesh.mesh, 0)) {
       cuts.push_back(fabrication::cut_strip(outline, allowances_));
       strip_names.push_back(outline.name);
-      const Vec2 box = cuts.back().high - cuts.back().low;
-      trial.width.push_back(box.y());
-      used += box.x() * box.y();
-      net += cuts.back().area;
+      trial.width.push_back(cuts.back().high.y() - cuts.back().low.y());
     }
-    trial.waste = 1 - net / used;
+    const workflow::Roll& roll = settings_.roll;
+    const double roll_width = std::max(roll.width, fabrication::roll_width_for(cuts, roll.selvedge));
+    trial.waste = fabrication::nest(cuts, strip_names, roll_width, roll.selvedge, RollSheet{}.gap).waste_fraction;
     for (const solver::flattening::PointStretch& s : flat.stretches) {
       trial.distortion = std::max({trial.distortion, s.larger - 1, 1 - s.smaller});
     }

@@ -22,7 +22,7 @@ namespace {
 namespace strips = geometry::strips;
 namespace workflow = pipeline::workflow;
 
-// Numbers of the blocks to be cut: those named, or all foils that are not flat.
+// Numbers of the blocks to be cut: those named, those with curves, or all foils that are not flat.
 std::vector<std::size_t> foils_to_cut(const common::Start& start, const workflow::PatternSettings& settings) {
   const geometry::Mesh& mesh = start.state.mesh;
   const geometry::Plane plane = geometry::edge_plane(mesh, mesh.nodes);
@@ -32,7 +32,8 @@ std::vector<std::size_t> foils_to_cut(const common::Start& start, const workflow
     const bool is_flat = geometry::deepest_point(mesh, mesh.blocks[b], mesh.nodes, plane).distance < flat;
     const bool named =
         std::find(settings.foils.begin(), settings.foils.end(), mesh.blocks[b].name) != settings.foils.end();
-    if (settings.foils.empty() ? !is_flat : named) chosen.push_back(b);
+    const bool wanted = settings.curves.empty() ? !is_flat : settings.curves.contains(mesh.blocks[b].name);
+    if (settings.foils.empty() ? wanted : named) chosen.push_back(b);
   }
   if (chosen.empty()) {
     throw base::InputError(common::place(start.workflow, "stages." + start.stage().id + ".from") +
@@ -157,7 +158,7 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
   return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
     return fabricate(welded.state.mesh.blocks[b].name, sheets,
                      {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
-                     {roll.width, roll.selvedge, 0.01, !settings.roll_given});
+                     {roll.width, roll.selvedge, RollSheet{}.gap, !settings.roll_given});
   });
 }
 
