@@ -43,6 +43,25 @@ std::vector<Vec2> conformal_start(const flattening::FlatNodes& nodes, const flat
   return start;
 }
 
+// That no triangle between nodes was turned over, mid-side nodes included.
+void check_unfolded(const flattening::FlatNodes& nodes, const flattening::Problem& problem,
+                    std::span<const Index> strip_of_element, Index count, std::span<const Vec2> points) {
+  for (Index strip = 0; strip < count; ++strip) {
+    const strips::StripSurface piece =
+        strips::strip_surface(problem.element, nodes.connectivity, strip_of_element, strip, problem.form);
+    for (const auto& [i, j, k] : piece.surface.triangles) {
+      const Vec2& a = points[at(piece.nodes[at(i)])];
+      const Vec2 u = points[at(piece.nodes[at(j)])] - a;
+      const Vec2 v = points[at(piece.nodes[at(k)])] - a;
+      if (u.x() * v.y() - u.y() * v.x() > 0) continue;
+      const Vec3& x = piece.surface.points[at(i)];
+      throw base::GeometryError(fmt::format("laid flat, strip {} folds over at ({:.6g}, {:.6g}, {:.6g}) m: take "
+                                            "narrower strips or smaller elements",
+                                            strip + 1, x.x(), x.y(), x.z()));
+    }
+  }
+}
+
 using FlatOf = std::map<std::pair<Index, Index>, Index>; // (strip, node of the mesh) -> flat node, of boundary nodes
 
 struct Segment {
@@ -183,6 +202,7 @@ FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressR
     }
   }
   foil.flat = flattening::flatten(problem, start);
+  check_unfolded(foil.nodes, problem, cut.strip_of_element, cut.strips, foil.flat.points);
   foil.stretches = flattening::stretches(problem, foil.flat.points);
   for (const auto& [left, right] : mating) {
     foil.seam_lengths.emplace_back(length_of(left, foil.flat.points), length_of(right, foil.flat.points));

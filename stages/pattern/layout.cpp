@@ -55,9 +55,9 @@ struct Trial {
 
 class Planner {
 public:
-  Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil)
-      : surface_(surface), settings_(settings),
-        foil_(std::move(foil)), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+  Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil, int least)
+      : surface_(surface), settings_(settings), foil_(std::move(foil)),
+        least_(least), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
         rough_(surface) {
     rough_.fine = rough_.coarse;
   }
@@ -223,7 +223,7 @@ private:
   Layout fewest_strips(double direction) const {
     const double usable = settings_.roll.width - 2 * settings_.roll.selvedge;
     const auto [low, high] = extent_across(surface_.plan, direction);
-    const int first = std::max(2, static_cast<int>(std::ceil((high - low) / (usable - settings_.roll.weld))));
+    const int first = std::max(least_, static_cast<int>(std::ceil((high - low) / (usable - settings_.roll.weld))));
     double widest = 0;
     for (int count = first; count < first + 6; ++count) {
       Layout layout = equal_strips(direction, count);
@@ -242,14 +242,16 @@ private:
   const strips::Surface& surface_;
   const workflow::PatternSettings& settings_;
   std::string foil_;
+  int least_; // strips, where the roll decides
   fabrication::Allowances allowances_;
   strips::Surface rough_; // with the coarse copy only: for the widths of trials
 };
 
 } // namespace
 
-Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& settings, const std::string& foil) {
-  const Planner planner(surface, settings, foil);
+Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& settings, const std::string& foil,
+               int least) {
+  const Planner planner(surface, settings, foil, least);
   if (settings.curves.contains(foil)) return planner.given_curves();
   if (settings.direction) return planner.in_direction(*settings.direction);
   return planner.best_direction();

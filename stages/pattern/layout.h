@@ -21,10 +21,11 @@ struct Layout {
 
 // Finds the cutting lines of a foil: given curves, or parallel lines (straight in plan or geodesics with the same ends)
 // in the given or the best direction, so many as asked for or as the roll demands, placed so that the strips come out
-// equally wide when laid flat. Widths are those of flat strips with their allowances, measured on a coarse copy.
+// equally wide when laid flat. Widths are those of flat strips with their allowances, measured on a coarse copy; where
+// the roll decides their number, there are `least` at least.
 // Throws GeometryError with the place and what would work.
 Layout lay_out(const geometry::strips::Surface& surface, const pipeline::workflow::PatternSettings& settings,
-               const std::string& foil);
+               const std::string& foil, int least = 2);
 
 // Size of elements for all foils' cutting lines, m in plan: that of the mesh, or as much smaller, down to its half, as
 // the narrowest strip needs for two elements across.

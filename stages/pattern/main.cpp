@@ -63,9 +63,9 @@ auto at_place(const std::string& place, const Make& make) {
 }
 
 Layout lay_out_at_place(const common::Start& start, const workflow::PatternSettings& settings,
-                        const strips::Surface& surface, const std::string& foil) {
+                        const strips::Surface& surface, const std::string& foil, int least) {
   try {
-    return lay_out(surface, settings, foil);
+    return lay_out(surface, settings, foil, least);
   } catch (const base::GeometryError& error) {
     std::string message = error.what();
     const std::string name = fmt::format("foil `{}`: ", foil);
@@ -102,22 +102,18 @@ Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& se
   return wanted;
 }
 
-Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettings& settings,
-                       const std::vector<std::size_t>& chosen) {
+// Lays out, cuts and flattens once; `least` [block]: strips at least, where the roll decides.
+Welded cut_once(const common::Start& start, const workflow::PatternSettings& settings,
+                const std::vector<std::size_t>& chosen, const std::vector<strips::Surface>& surfaces,
+                const std::vector<int>& least) {
   const geometry::Mesh& mesh = start.state.mesh;
-  std::vector<strips::Surface> surfaces;
-  for (const geometry::Block& block : mesh.blocks) {
-    surfaces.push_back(at_place(
-        fmt::format("{}foil `{}`: ", common::place(start.workflow, "stages." + start.stage().id + ".from"), block.name),
-        [&] { return strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes); }));
-  }
   std::vector<strips::Cut> cuts;
   for (const strips::Surface& surface : surfaces) cuts.push_back({&surface, {}});
   Welded welded;
   welded.wanted.resize(mesh.blocks.size());
   welded.flat.resize(mesh.blocks.size());
   for (const std::size_t b : chosen) {
-    const Layout layout = lay_out_at_place(start, settings, surfaces[b], mesh.blocks[b].name);
+    const Layout layout = lay_out_at_place(start, settings, surfaces[b], mesh.blocks[b].name, least[b]);
     base::say(fmt::format("{}: {}", mesh.blocks[b].name, layout.reason));
     cuts[b].lines = layout.lines;
     welded.wanted[b] = wanted_of(start, settings, b, layout.direction);
@@ -142,8 +138,51 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
                       fmt::format("the strips of foil `{}` did not settle in the plane after {} iterations",
                                   mesh.blocks[b].name, welded.flat[b]->flat.iterations));
   }
-  weld(welded);
   return welded;
+}
+
+geometry::fabrication::Allowances allowances_of(const workflow::PatternSettings& settings) {
+  return {settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing};
+}
+
+// Of the cut strips of a foil, m.
+double widest_cut(const Welded& welded, std::size_t b, const workflow::PatternSettings& settings) {
+  double widest = 0;
+  for (const auto& strip : outlines(*welded.flat[b], welded.state.mesh, static_cast<base::Index>(b))) {
+    const auto cut = geometry::fabrication::cut_strip(strip, allowances_of(settings));
+    widest = std::max(widest, cut.high.y() - cut.low.y());
+  }
+  return widest;
+}
+
+// Where the roll decides on the number of strips, the finished ones are checked against it, and a foil with too wide
+// ones gets one more: the layout knows their widths from a coarse copy only.
+Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettings& settings,
+                       const std::vector<std::size_t>& chosen) {
+  const geometry::Mesh& mesh = start.state.mesh;
+  std::vector<strips::Surface> surfaces;
+  for (const geometry::Block& block : mesh.blocks) {
+    surfaces.push_back(at_place(
+        fmt::format("{}foil `{}`: ", common::place(start.workflow, "stages." + start.stage().id + ".from"), block.name),
+        [&] { return strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes); }));
+  }
+  const bool roll_decides = settings.roll_given && !settings.strips_per_foil && settings.curves.empty();
+  const double usable = settings.roll.width - 2 * settings.roll.selvedge;
+  std::vector<int> least(mesh.blocks.size(), 2);
+  for (int attempts = roll_decides ? 4 : 1;; --attempts) {
+    Welded welded = cut_once(start, settings, chosen, surfaces, least);
+    bool fits = true;
+    for (const std::size_t b : chosen) {
+      if (attempts == 1 || widest_cut(welded, b, settings) <= usable) continue;
+      fits = false;
+      least[b] = welded.cuts[b].strips + 1;
+      base::say(fmt::format("{}: its strips came out up to {:.0f} mm wide, the roll has {:.0f} mm: one more",
+                            mesh.blocks[b].name, 1e3 * widest_cut(welded, b, settings), 1e3 * usable));
+    }
+    if (!fits) continue;
+    weld(welded);
+    return welded;
+  }
 }
 
 // What a manufacturer gets of one foil.
