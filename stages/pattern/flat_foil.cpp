@@ -65,54 +65,47 @@ void check_unfolded(const flattening::FlatNodes& nodes, const flattening::Proble
 using FlatOf = std::map<std::pair<Index, Index>, Index>; // (strip, node of the mesh) -> flat node, of boundary nodes
 
 struct Segment {
-  Vec2 from, to;
+  Vec3 from, to; // on the form
 };
 
-// The clamped edges of each strip in the plane.
-std::vector<std::vector<Segment>> clamped_segments(const FlatFoil& foil, std::span<const Vec2> points) {
-  std::vector<std::vector<Segment>> all(foil.sides.size());
-  for (std::size_t s = 0; s < foil.sides.size(); ++s) {
-    for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
-      if (foil.sides[s][k].edge < 0) continue;
-      const std::vector<Index>& nodes = foil.flat_sides[s][k];
-      for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-        all[s].push_back({points[at(nodes[i])], points[at(nodes[i + 1])]});
-      }
+// The clamped edges of the foil.
+std::vector<Segment> clamped_segments(const geometry::Mesh& mesh) {
+  std::vector<Segment> all;
+  for (const geometry::Edge& edge : mesh.edges) {
+    for (std::size_t i = 0; i + 1 < edge.nodes.size() + (edge.closed ? 1 : 0); ++i) {
+      all.push_back({mesh.nodes[at(edge.nodes[i])], mesh.nodes[at(edge.nodes[(i + 1) % edge.nodes.size()])]});
     }
   }
   return all;
 }
 
-double distance(const Segment& segment, const Vec2& x) {
-  const Vec2 along = segment.to - segment.from;
+double distance(const Segment& segment, const Vec3& x) {
+  const Vec3 along = segment.to - segment.from;
   const double t = std::clamp((x - segment.from).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (x - segment.from - t * along).norm();
 }
 
-// The wanted stretch at every stress point; along clamped edges its part along the edge fades out, since the frame
-// does not stretch.
-std::vector<double> stretch_field(const FlatFoil& foil, const flattening::Problem& problem,
-                                  std::span<const Vec2> points, std::span<const Index> strip_of_element,
+// The wanted stretch at every stress point; near clamped edges its part along the edge fades out, since the frame does
+// not stretch.
+std::vector<double> stretch_field(const geometry::Mesh& mesh, const geometry::Block& block, std::size_t per_element,
                                   const Wanted& wanted) {
-  const std::size_t per_element = geometry::stress_rule(problem.element, problem.rule).size();
   std::vector<double> field;
-  field.reserve(strip_of_element.size() * per_element * 3);
   const bool fades = wanted.decompensation > 0;
-  const auto segments = fades ? clamped_segments(foil, points) : std::vector<std::vector<Segment>>();
-  const auto n = at(geometry::nodes_per_element(problem.element));
-  for (std::size_t e = 0; e < strip_of_element.size(); ++e) {
+  const std::vector<Segment> segments = fades ? clamped_segments(mesh) : std::vector<Segment>();
+  const Eigen::Rotation2Dd turn(-wanted.direction); // strips lie over their plan, the roll along x
+  for (Index e = 0; e < mesh.element_count(block); ++e) {
     Vec3 g = wanted.stretch;
     if (fades) {
-      Vec2 centre = Vec2::Zero();
-      for (std::size_t a = 0; a < n; ++a) centre += points[at(problem.nodes->connectivity[e * n + a])];
-      centre /= static_cast<double>(n);
+      Vec3 centre = Vec3::Zero();
+      const std::span<const Index> nodes = mesh.element_nodes(block, e);
+      for (const Index node : nodes) centre += mesh.nodes[at(node)] / static_cast<double>(nodes.size());
       double nearest = std::numeric_limits<double>::infinity();
       Vec2 t = Vec2::UnitX();
-      for (const Segment& segment : segments[at(strip_of_element[e])]) {
+      for (const Segment& segment : segments) {
         const double d = distance(segment, centre);
         if (d >= nearest) continue;
         nearest = d;
-        t = (segment.to - segment.from).normalized();
+        t = turn * (segment.to - segment.from).head<2>().normalized();
       }
       const double part = std::max(0.0, 1 - nearest / wanted.decompensation);
       const double along = (g[0] - 1) * t.x() * t.x() + (g[1] - 1) * t.y() * t.y() + 2 * g[2] * t.x() * t.y();
@@ -127,6 +120,19 @@ double length_of(std::span<const Index> nodes, std::span<const Vec2> points) {
   double length = 0;
   for (std::size_t k = 0; k + 1 < nodes.size(); ++k) length += (points[at(nodes[k + 1])] - points[at(nodes[k])]).norm();
   return length;
+}
+
+// A side through corners and mid-side nodes with two more points an element: its sides are parabolas.
+std::vector<Vec2> along_parabolas(const std::vector<Vec2>& nodes) {
+  std::vector<Vec2> points{nodes.front()};
+  for (std::size_t k = 0; k + 2 < nodes.size(); k += 2) {
+    const Vec2 &a = nodes[k], &b = nodes[k + 1], &c = nodes[k + 2];
+    points.emplace_back(0.375 * a + 0.75 * b - 0.125 * c);
+    points.push_back(b);
+    points.emplace_back(-0.125 * a + 0.75 * b + 0.375 * c);
+    points.push_back(c);
+  }
+  return points;
 }
 
 std::vector<Index> flat_of(const FlatOf& flat, Index strip, std::span<const Index> nodes) {
@@ -180,7 +186,8 @@ FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressR
   problem.weight = wanted.weight;
   const std::vector<Vec2> start =
       conformal_start(foil.nodes, problem, cut.strip_of_element, cut.strips, wanted.direction);
-  problem.stretch = stretch_field(foil, problem, start, cut.strip_of_element, wanted);
+  foil.wanted = stretch_field(mesh, b, geometry::stress_rule(mesh.element, rule).size(), wanted);
+  problem.stretch = foil.wanted;
   std::vector<std::pair<std::vector<Index>, std::vector<Index>>> mating;
   for (const strips::Seam& seam : cut.seams) {
     mating.emplace_back(flat_of(flat, seam.left, seam.nodes), flat_of(flat, seam.right, seam.nodes));
@@ -201,7 +208,7 @@ FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressR
       }
     }
   }
-  foil.flat = flattening::flatten(problem, start);
+  foil.flat = flattening::flatten(problem, start, wanted.options);
   check_unfolded(foil.nodes, problem, cut.strip_of_element, cut.strips, foil.flat.points);
   foil.stretches = flattening::stretches(problem, foil.flat.points);
   for (const auto& [left, right] : mating) {
@@ -245,6 +252,7 @@ std::vector<geometry::fabrication::FlatStrip> outlines(const FlatFoil& foil, con
         out.name = mesh.edges[at(side.edge)].name;
       }
       for (const Index node : foil.flat_sides[s][k]) out.points.push_back(foil.flat.points[at(node)]);
+      if (side.edge >= 0 && geometry::is_quadratic(mesh.element)) out.points = along_parabolas(out.points);
       strip.sides.push_back(std::move(out));
     }
     result.push_back(std::move(strip));

@@ -26,6 +26,7 @@ struct Wanted {
   double decompensation = 0; // m, zone along clamped edges where the stretch along the edge fades in; 0: none
   Mat3 weight = Mat3::Identity();
   bool tied = true; // mating seams equally long
+  solver::flattening::Options options;
 };
 
 // Stretch and weight for a foil that shall carry `prestress` (isotropic, N/m): G of the law (numerics 11), and the
@@ -40,6 +41,7 @@ std::optional<ElasticStretch> elastic_stretch(const solver::material::Law& law, 
 struct FlatFoil {
   solver::flattening::FlatNodes nodes;
   solver::flattening::Flat flat;
+  std::vector<double> wanted;                                  // stretch [element][point][3], faded near clamped edges
   std::vector<solver::flattening::PointStretch> stretches;     // [element][point]
   std::vector<std::vector<geometry::strips::StripSide>> sides; // per strip, nodes of the mesh
   std::vector<std::vector<std::vector<Index>>> flat_sides;     // the same, flat nodes

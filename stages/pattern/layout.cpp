@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -135,7 +136,7 @@ private:
   std::vector<CuttingLine> lines_at(const strips::Surface& surface, const std::vector<double>& offsets,
                                     double direction) const {
     std::vector<CuttingLine> lines;
-    for (const double offset : offsets) {
+    for (const double offset : offsets | std::views::reverse) { // the first line lies between the first two strips
       const std::vector<double> crossings =
           geometry::rim_crossings(surface_.plan, offset * across(direction), along(direction));
       try {
@@ -188,21 +189,73 @@ private:
 
   Layout equal_strips(double direction, int count) const {
     const auto [low, high] = extent_across(surface_.plan, direction);
-    std::vector<double> offsets;
-    for (int k = 0; k <= count; ++k) offsets.push_back(low + (high - low) * k / count);
+    std::vector<double> offsets = equal_middles(direction, count, low, high);
     Layout layout{direction, {}, fmt::format("{} strips at {:.1f} degrees", count, direction * degrees)};
     constexpr int rounds = 3;
     const auto inner = [&] { return std::vector<double>(offsets.begin() + 1, offsets.end() - 1); };
-    for (int round = 0; round < rounds; ++round) {
-      std::vector<double> width = measure(lines_at(rough_, inner(), direction), direction).width;
-      std::reverse(width.begin(), width.end()); // strips are numbered from the left, where offsets are largest
-      if (width.size() != static_cast<std::size_t>(count)) break; // a plan with bays: strips in parts
-      const auto [least, most] = std::minmax_element(width.begin(), width.end());
-      if (*most - *least < 0.005 * *most) break;
-      offsets = balanced(offsets, width);
+    try {
+      for (int round = 0; round < rounds; ++round) {
+        std::vector<double> width = measure(lines_at(rough_, inner(), direction), direction).width;
+        std::reverse(width.begin(), width.end()); // strips are numbered from the left, where offsets are largest
+        if (width.size() != static_cast<std::size_t>(count)) break; // a plan with bays: strips in parts
+        const auto [least, most] = std::minmax_element(width.begin(), width.end());
+        if (*most - *least < 0.005 * *most) break;
+        offsets = balanced(offsets, width);
+      }
+    } catch (const base::GeometryError&) {
+      // the trial's own mesh is too coarse for these lines: they stay where they are
     }
     layout.lines = lines_at(surface_, inner(), direction);
     return layout;
+  }
+
+  // Offsets of the ends of lines whose middles divide the surface's section across the middle of the plan into equal
+  // lengths; both sides of the plan included. Geodesics bow outwards from their ends, the more the steeper the surface.
+  std::vector<double> equal_middles(double direction, int count, double low, double high) const {
+    const auto [back, front] = extent_across(surface_.plan, direction + std::numbers::pi / 2);
+    constexpr int samples = 200;
+    std::vector<double> run{0};
+    std::optional<Vec3> last;
+    for (int i = 0; i <= samples; ++i) {
+      const double o = low + (high - low) * i / samples;
+      // across, turned by a quarter, points backwards
+      const Vec2 place = -0.5 * (back + front) * along(direction) + o * across(direction);
+      const bool on = geometry::inside(surface_.plan, place, 0);
+      const Vec3 x = on ? surface_.chart.lift(place) : Vec3(place.x(), place.y(), 0);
+      if (last) run.push_back(run.back() + (x - *last).norm());
+      last = x;
+    }
+    std::vector<double> offsets{low};
+    std::size_t piece = 0;
+    for (int k = 1; k < count; ++k) {
+      const double wanted = run.back() * k / count;
+      while (run[piece + 1] < wanted) ++piece;
+      const double part = (wanted - run[piece]) / (run[piece + 1] - run[piece]);
+      offsets.push_back(
+          end_of(direction, low + (high - low) * (static_cast<double>(piece) + part) / samples, low, high));
+    }
+    offsets.push_back(high);
+    return offsets;
+  }
+
+  // Offset of the ends of a line whose middle lies at a wanted offset.
+  double end_of(double direction, double wanted, double low, double high) const {
+    double offset = wanted;
+    constexpr int tries = 8;
+    for (int i = 0; i < tries; ++i) {
+      try {
+        double sum = 0;
+        const std::vector<CuttingLine> lines = lines_at(rough_, {offset}, direction);
+        for (const CuttingLine& line : lines) sum += across(direction).dot(line.plan[line.plan.size() / 2]);
+        if (lines.empty()) return wanted;
+        const double miss = wanted - sum / static_cast<double>(lines.size());
+        if (std::abs(miss) < 1e-3 * (high - low)) return offset;
+        offset += miss;
+      } catch (const base::GeometryError&) { // too near to the rim
+        offset += 0.2 * (0.5 * (low + high) - offset);
+      }
+    }
+    return offset;
   }
 
   // Offsets at which strips of these widths would be equally wide: the width summed up is taken as piecewise linear.
@@ -225,14 +278,20 @@ private:
     const auto [low, high] = extent_across(surface_.plan, direction);
     const int first = std::max(least_, static_cast<int>(std::ceil((high - low) / (usable - settings_.roll.weld))));
     double widest = 0;
+    std::string refusal;
     for (int count = first; count < first + 6; ++count) {
-      Layout layout = equal_strips(direction, count);
-      const std::vector<double> width = measure(layout.lines, direction).width;
-      widest = *std::max_element(width.begin(), width.end());
-      if (widest > usable) continue;
-      layout.reason += fmt::format(", at most {:.0f} mm wide on a roll with {:.0f} mm", 1e3 * widest, 1e3 * usable);
-      return layout;
+      try {
+        Layout layout = equal_strips(direction, count);
+        const std::vector<double> width = measure(layout.lines, direction).width;
+        widest = *std::max_element(width.begin(), width.end());
+        if (widest > usable) continue;
+        layout.reason += fmt::format(", about {:.0f} mm wide on a roll with {:.0f} mm", 1e3 * widest, 1e3 * usable);
+        return layout;
+      } catch (const base::GeometryError& error) {
+        if (refusal.empty()) refusal = error.what();
+      }
     }
+    if (!refusal.empty()) throw base::GeometryError(refusal);
     throw base::GeometryError(
         fmt::format("foil `{}`: even {} strips are {:.0f} mm wide with their allowances, the roll "
                     "has {:.0f} mm without its selvedge: take a wider roll",
@@ -258,7 +317,7 @@ Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& 
 }
 
 double element_size(const std::vector<strips::Cut>& cuts) {
-  constexpr double across = 1.6; // elements between two lines: two when rounded
+  constexpr double across = 1.6; // elements between two lines: two when rounded; one between line and rim
   const double size = cuts.front().surface->size;
   double narrowest = std::numeric_limits<double>::infinity();
   for (const strips::Cut& cut : cuts) {
@@ -268,6 +327,12 @@ double element_size(const std::vector<strips::Cut>& cuts) {
       const std::size_t step = std::max<std::size_t>(line.plan.size() / 64, 1);
       for (std::size_t k = 0; k < line.plan.size(); k += step) points.push_back(line.plan[k]);
       points.push_back(line.plan.back());
+      for (const Vec2& x : points) { // away from the ends, where a line comes as near to the rim as it likes
+        if (std::min((x - points.front()).norm(), (x - points.back()).norm()) < 5 * size) continue;
+        const geometry::Plan& plan = cut.surface->plan;
+        narrowest =
+            std::min(narrowest, across * (geometry::rim_point(plan, geometry::rim_position(plan, x)) - x).norm());
+      }
     }
     for (std::size_t a = 0; a < lines.size(); ++a) {
       for (std::size_t b = a + 1; b < lines.size(); ++b) {

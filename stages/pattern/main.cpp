@@ -93,6 +93,9 @@ Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& se
   wanted.direction = direction;
   wanted.decompensation = settings.decompensation;
   wanted.weight = elastic->weight;
+  const workflow::SolverOptions& options = start.stage().options;
+  if (options.tolerance) wanted.options.tolerance = *options.tolerance;
+  if (options.max_iterations) wanted.options.max_iterations = *options.max_iterations;
   const workflow::Compensation& compensation = settings.compensation;
   if (compensation.kind == workflow::Compensation::Kind::elastic) {
     wanted.stretch = elastic->stretch / (1 - compensation.creep);
@@ -239,7 +242,8 @@ int run(int argc, char** argv) {
     factorizations += welded.flat[b]->flat.factorizations;
     const std::vector<StripQuality> quality = quality_of(welded, b);
     const Fabrication& made = sheets[name] = draw(start, settings, welded, b, quality);
-    report_strips(quality, made, *welded.wanted[b], name, summary);
+    report_strips(quality, made, name, summary);
+    summary.set("patterns." + name + ".direction", welded.wanted[b]->direction);
     if (made.roll_width > settings.roll.width) {
       const std::string warning = fmt::format("the strips of foil `{}` need a roll of {:.0f} mm, {:.0f} mm are usual: "
                                               "take more strips, or name the roll",

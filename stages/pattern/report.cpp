@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -22,21 +23,23 @@ double percent(double value) {
   return 100 * value;
 }
 
-// Wanted compensation along a side: of the stretch along its mean direction in the plane, nothing where it fades out.
-double requested_along(const Wanted& wanted, const std::vector<Vec2>& side, bool clamped) {
-  if (clamped && wanted.decompensation > 0) return 0;
-  double sum = 0;
-  double length = 0;
-  for (std::size_t k = 0; k + 1 < side.size(); ++k) {
-    const Vec2 d = side[k + 1] - side[k];
-    const Vec2 u = d.normalized();
-    const Vec3& g = wanted.stretch;
-    // a length dX becomes |G dX|
-    const double stretch = Vec2(g[0] * u.x() + g[2] * u.y(), g[2] * u.x() + g[1] * u.y()).norm();
-    sum += (1 - 1 / stretch) * d.norm();
-    length += d.norm();
+// Wanted compensation along a direction of the plane: a length dX becomes |G dX|.
+double requested_along(const double* g, const Vec2& direction) {
+  const Vec2 u = direction.normalized();
+  return 1 - 1 / Vec2(g[0] * u.x() + g[2] * u.y(), g[2] * u.x() + g[1] * u.y()).norm();
+}
+
+// The element of each strip that has a side on its boundary, by the side's corners counterclockwise.
+using ElementOfSide = std::map<std::pair<Index, Index>, std::size_t>;
+
+ElementOfSide elements_by_side(const geometry::Mesh& mesh, const geometry::Block& block) {
+  const auto corners = at(geometry::corners_per_element(mesh.element));
+  ElementOfSide elements;
+  for (Index e = 0; e < mesh.element_count(block); ++e) {
+    const std::span<const Index> nodes = mesh.element_nodes(block, e);
+    for (std::size_t k = 0; k < corners; ++k) elements[{nodes[k], nodes[(k + 1) % corners]}] = at(e);
   }
-  return sum / length;
+  return elements;
 }
 
 } // namespace
@@ -44,6 +47,8 @@ double requested_along(const Wanted& wanted, const std::vector<Vec2>& side, bool
 std::vector<StripQuality> quality_of(const Welded& welded, std::size_t block) {
   const FlatFoil& foil = *welded.flat[block];
   const Wanted& wanted = *welded.wanted[block];
+  const ElementOfSide element_of = elements_by_side(welded.state.mesh, welded.state.mesh.blocks[block]);
+  const std::size_t step = geometry::is_quadratic(welded.state.mesh.element) ? 2 : 1; // nodes from corner to corner
   const geometry::Mesh& mesh = welded.state.mesh;
   const geometry::strips::CutFoil& cut = welded.cuts[block];
   const std::size_t points = foil.stretches.size() / cut.strip_of_element.size();
@@ -57,12 +62,18 @@ std::vector<StripQuality> quality_of(const Welded& welded, std::size_t block) {
     form_area[s] += stretch.area;
     // a length along x of the plane is 1 / sqrt(C11) of the one on the form
     const base::Mat2 metric = stretch.inverse_metric.inverse();
-    for (int i = 0; i < 2; ++i) f.compensation[i] += stretch.area * (1 - 1 / std::sqrt(metric(i, i)));
+    for (int i = 0; i < 2; ++i) {
+      f.compensation[i] += stretch.area * (1 - 1 / std::sqrt(metric(i, i)));
+      f.requested[i] += stretch.area * requested_along(foil.wanted.data() + 3 * k, Vec2::Unit(i));
+    }
   }
   for (std::size_t s = 0; s < all.size(); ++s) {
     StripQuality& f = all[s];
     f.name = strip_name(mesh.blocks[block].name, static_cast<Index>(s));
-    for (double& c : f.compensation) c /= form_area[s];
+    for (int i = 0; i < 2; ++i) {
+      f.compensation[i] /= form_area[s];
+      f.requested[i] /= form_area[s];
+    }
     for (std::size_t k = 0; k < foil.sides[s].size(); ++k) {
       const geometry::strips::StripSide& side = foil.sides[s][k];
       std::vector<Vec2> flat;
@@ -74,18 +85,24 @@ std::vector<StripQuality> quality_of(const Welded& welded, std::size_t block) {
         form_length += (mesh.nodes[at(side.nodes[i])] - mesh.nodes[at(side.nodes[i - 1])]).norm();
         flat_length += (flat[i] - flat[i - 1]).norm();
       }
+      double requested = 0;
+      for (std::size_t i = 0; i + step < side.nodes.size(); i += step) {
+        const Vec2 along = flat[i + step] - flat[i];
+        const std::size_t e = element_of.at({side.nodes[i], side.nodes[i + step]});
+        requested += along.norm() * requested_along(foil.wanted.data() + 3 * points * e, along) / flat_length;
+      }
+      if (side.edge >= 0 && wanted.decompensation > 0) requested = 0; // the frame does not stretch
       f.edges.push_back({side.seam >= 0   ? seam_name(side.seam)
                          : side.edge >= 0 ? mesh.edges[at(side.edge)].name
                                           : "",
-                         requested_along(wanted, flat, side.edge >= 0), 1 - flat_length / form_length});
+                         requested, 1 - flat_length / form_length});
     }
   }
   return all;
 }
 
-void report_strips(const std::vector<StripQuality>& strips, const Fabrication& made, const Wanted& wanted,
-                   const std::string& foil, common::Summary& summary) {
-  const double requested[2] = {1 - 1 / wanted.stretch[0], 1 - 1 / wanted.stretch[1]};
+void report_strips(const std::vector<StripQuality>& strips, const Fabrication& made, const std::string& foil,
+                   common::Summary& summary) {
   const char* directions[2] = {"warp", "weft"};
   for (std::size_t s = 0; s < strips.size(); ++s) {
     const StripQuality& f = strips[s];
@@ -102,9 +119,9 @@ void report_strips(const std::vector<StripQuality>& strips, const Fabrication& m
                     1e3 * size.length, 1e3 * size.width, size.net_area, percent(f.distortion));
     for (int i = 0; i < 2; ++i) {
       const std::string direction = key + "compensation." + directions[i] + ".";
-      summary.set(direction + "requested", requested[i]);
+      summary.set(direction + "requested", f.requested[i]);
       summary.set(direction + "achieved", f.compensation[i]);
-      line += fmt::format(" {} {:.3f}/{:.3f} %,", directions[i], percent(requested[i]), percent(f.compensation[i]));
+      line += fmt::format(" {} {:.3f}/{:.3f} %,", directions[i], percent(f.requested[i]), percent(f.compensation[i]));
     }
     for (std::size_t e = 0; e < f.edges.size(); ++e) {
       const std::string edge = fmt::format("{}edges.#{}.", key, e);

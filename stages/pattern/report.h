@@ -10,8 +10,9 @@ namespace pneuma::stages::pattern {
 // What flattening did to one strip.
 struct StripQuality {
   std::string name;
-  double distortion = 0;       // largest stretch against the wanted one, -
-  double compensation[2] = {}; // achieved along warp and weft: 1 - flat length / length on the form, mean
+  double distortion = 0; // largest stretch against the wanted one, -
+  // along warp and weft: 1 - flat length / length on the form, means over the strip
+  double requested[2] = {}, compensation[2] = {};
   struct Edge {
     std::string name;
     double requested = 0, achieved = 0; // along the side
@@ -23,7 +24,7 @@ std::vector<StripQuality> quality_of(const Welded& welded, std::size_t block);
 
 // Writes patterns.<foil> to the summary and a line a strip to the log: sizes, distortion, requested and achieved
 // compensation.
-void report_strips(const std::vector<StripQuality>& strips, const Fabrication& made, const Wanted& wanted,
-                   const std::string& foil, common::Summary& summary);
+void report_strips(const std::vector<StripQuality>& strips, const Fabrication& made, const std::string& foil,
+                   common::Summary& summary);
 
 } // namespace pneuma::stages::pattern
