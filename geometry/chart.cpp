@@ -103,25 +103,27 @@ Eigen::Matrix<double, 3, nodes_per_element(E)> Chart::element(Index e) const {
 template <ElementType E>
 void Chart::check_graph() const {
   constexpr double upright = 1e-3; // vertical part of the unit normal
-  const auto nodes = node_coordinates<E>();
-  std::vector<Vec2> samples;
-  for (std::size_t k = 0; k < corners_per_element(E); ++k) samples.emplace_back(nodes[k][0], nodes[k][1]);
-  for (const QuadraturePoint& q : pressure_rule(E)) samples.emplace_back(q.xi, q.eta);
-
+  // the element as a whole: a film is upright in the very corner where its plan is re-entrant, and nowhere else
   const auto count = static_cast<Index>(connectivity_.size()) / nodes_per_element(E);
   for (Index e = 0; e < count; ++e) {
     const Element<E> x = element<E>(e);
-    for (const Vec2& sample : samples) {
-      const auto shape = shape_functions<E>(sample[0], sample[1]);
+    Vec3 normal = Vec3::Zero();
+    Vec3 place = Vec3::Zero();
+    double area = 0;
+    for (const QuadraturePoint& q : pressure_rule(E)) {
+      const auto shape = shape_functions<E>(q.xi, q.eta);
       const Mat32 tangents = x * shape.derivative;
-      const Vec3 normal = tangents.col(0).cross(tangents.col(1));
-      if (normal.z() > upright * normal.norm()) continue;
-      const Vec3 place = x * shape.value;
-      throw base::GeometryError(fmt::format(
-          "the surface {} at ({:.6g}, {:.6g}, {:.6g}), element {}: it must be a graph over its plan to be cut; less "
-          "pressure or more prestress makes it flatter",
-          normal.z() < -upright * normal.norm() ? "folds over" : "stands upright", place.x(), place.y(), place.z(), e));
+      const Vec3 part = q.weight * tangents.col(0).cross(tangents.col(1));
+      normal += part;
+      area += part.norm();
+      place += part.norm() * (x * shape.value);
     }
+    if (normal.z() > upright * area) continue;
+    place /= area;
+    throw base::GeometryError(fmt::format(
+        "the surface {} at ({:.6g}, {:.6g}, {:.6g}), element {}: it must be a graph over its plan to be cut; less "
+        "pressure or more prestress makes it flatter",
+        normal.z() < -upright * area ? "folds over" : "stands upright", place.x(), place.y(), place.z(), e));
   }
 }
 

@@ -324,6 +324,19 @@ CuttingLine given_line(const Surface& surface, std::span<const Vec2> points) {
   return line;
 }
 
+namespace {
+
+// Of two segments that cross or touch.
+Vec2 meeting_point(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const double turn = cross(b - a, d - c);
+  if (std::abs(turn) > 1e-12 * (b - a).norm() * (d - c).norm()) {
+    return a + std::clamp(cross(c - a, d - c) / turn, 0.0, 1.0) * (b - a);
+  }
+  return (std::max(a.x(), b.x()) >= c.x() && c.x() >= std::min(a.x(), b.x())) ? c : d; // along each other
+}
+
+} // namespace
+
 std::string crossing(std::span<const CuttingLine> lines) {
   struct Segment {
     std::size_t line, number;
@@ -344,7 +357,7 @@ std::string crossing(std::span<const CuttingLine> lines) {
       const Segment& t = segments[j];
       const bool neighbours = s.line == t.line && (s.number + 1 == t.number || t.number + 1 == s.number);
       if (neighbours || !meet(s.a, s.b, t.a, t.b)) continue;
-      const Vec2 place = (s.a + s.b + t.a + t.b) / 4;
+      const Vec2 place = meeting_point(s.a, s.b, t.a, t.b);
       if (s.line == t.line) return fmt::format("line {} crosses itself near {}", s.line + 1, text(place));
       return fmt::format("lines {} and {} cross or touch near {}", std::min(s.line, t.line) + 1,
                          std::max(s.line, t.line) + 1, text(place));
