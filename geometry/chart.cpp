@@ -102,7 +102,7 @@ Eigen::Matrix<double, 3, nodes_per_element(E)> Chart::element(Index e) const {
 
 template <ElementType E>
 void Chart::check_graph() const {
-  constexpr double upright = 1e-3; // vertical part of the unit normal
+  constexpr double upright = 0.12; // vertical part of the mean normal: steeper than 83 degrees
   // the element as a whole: a film is upright in the very corner where its plan is re-entrant, and nowhere else
   const auto count = static_cast<Index>(connectivity_.size()) / nodes_per_element(E);
   for (Index e = 0; e < count; ++e) {

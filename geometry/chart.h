@@ -14,7 +14,8 @@ namespace pneuma::geometry {
 // and Newton's method in the element's own coordinates.
 class Chart {
 public:
-  // Copies what it needs. Throws GeometryError with the place where the surface stands upright or folds over.
+  // Copies what it needs. Throws GeometryError with the place where the surface stands upright (an
+  // element steeper than 83 degrees in the mean) or folds over.
   Chart(const Mesh& mesh, const Block& block, std::span<const Vec3> positions);
 
   struct Place {

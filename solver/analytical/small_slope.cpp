@@ -17,7 +17,7 @@ Series tension_series(double first, double q, double follows, double nu, int ter
   Series square{first * first}; // of t
   Series d;                     // of 8 t' + 4 s t'': d_k = 4 (k + 1)(k + 2) t_(k+1)
   for (std::size_t k = 0; k + 1 < count; ++k) {
-    const double n = static_cast<double>(k);
+    const auto n = static_cast<double>(k);
     double sum = follows * q * q * ((3 + nu) / 2 - n) * t[k] + (k == 0 ? q * q / 8 : 0);
     for (std::size_t j = 0; j < k; ++j) sum += square[k - j] * d[j];
     d.push_back(-sum / square[0]);
@@ -84,7 +84,7 @@ std::optional<SmallSlopeSolution> small_slope(Theory theory, const CircularMembr
   if (!(rim.value > 0) || !(std::abs(t.back()) < 1e-3 * rim.value)) return std::nullopt;
   const Series flexibility = reciprocal(t);
   for (std::size_t k = 0; k < t.size(); ++k) {
-    const double n = static_cast<double>(k);
+    const auto n = static_cast<double>(k);
     solution.deflection += membrane.radius * q / 4 * flexibility[k] / (n + 1);
     solution.volume += std::numbers::pi * std::pow(membrane.radius, 3) * q / 4 * flexibility[k] / (n + 2);
   }

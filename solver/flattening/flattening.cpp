@@ -271,7 +271,8 @@ private:
   double line_search(double value, const VecX& step) {
     const std::vector<Vec2> before = points_;
     const double slope = gradient_.dot(step);
-    for (double length = 1; length > 1e-6; length /= 2) {
+    for (int halvings = 0; halvings < 20; ++halvings) {
+      const double length = std::ldexp(1.0, -halvings);
       for (std::size_t i = 0; i < points_.size(); ++i) {
         for (std::size_t c = 0; c < 2; ++c) {
           const Index u = unknown_[2 * i + c];
