@@ -43,6 +43,9 @@ public:
 
   double area() const { return area_; }
 
+  // Unknowns of an element or tie at most: rows of their matrices.
+  int stride() const { return std::max(2 * nodes_, 8); }
+
   // A tie that is missed by c over a side l strains a strip of width b by c/l: an energy of c^2 b / l. This many times
   // stiffer than the strips.
   double penalty() const { return side_ > 0 ? 100 * std::sqrt(area_) / side_ : 0; }
@@ -200,9 +203,9 @@ class Minimiser {
 public:
   Minimiser(const Problem& problem, std::vector<Vec2> start, const Options& options)
       : problem_(problem), options_(options), equations_(problem), points_(std::move(start)),
-        unknown_(number_unknowns(*problem.nodes, points_, count_)),
-        stride_(std::max(2 * geometry::nodes_per_element(problem.element), 8)), assembly_(make_assembly()),
-        cholesky_(assembly_.pattern), multipliers_(problem.ties.size(), 0.0), penalty_(equations_.penalty()) {}
+        unknown_(number_unknowns(*problem.nodes, points_, count_)), stride_(equations_.stride()),
+        assembly_(make_assembly()), cholesky_(assembly_.pattern), multipliers_(problem.ties.size(), 0.0),
+        penalty_(equations_.penalty()) {}
 
   Flat run(const std::function<void(const Iteration&)>& report) {
     Flat flat;
@@ -336,7 +339,7 @@ Value evaluate(const Problem& problem, std::span<const Vec2> points, std::span<c
   const Equations equations(problem);
   const auto size = static_cast<Eigen::Index>(2 * points.size());
   Value value{0, VecX::Zero(size), MatX::Zero(size, size)};
-  const int stride = std::max(2 * geometry::nodes_per_element(problem.element), 8);
+  const int stride = equations.stride();
   value.value = equations.evaluate(points, multipliers, penalty, stride, [&](const Equations::Part& part) {
     for (int j = 0; j < 2 * part.count; ++j) {
       const Eigen::Index column = 2 * part.nodes[j / 2] + j % 2;

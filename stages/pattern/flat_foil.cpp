@@ -62,7 +62,7 @@ void check_unfolded(const flattening::FlatNodes& nodes, const flattening::Proble
   }
 }
 
-using FlatOf = std::map<std::pair<Index, Index>, Index>; // (strip, node of the mesh) -> flat node, of boundary nodes
+using FlatOf = std::map<std::pair<Index, Index>, Index>; // (strip, node of the mesh) -> flat node
 
 struct Segment {
   Vec3 from, to; // on the form
@@ -114,12 +114,6 @@ std::vector<double> stretch_field(const geometry::Mesh& mesh, const geometry::Bl
     for (std::size_t k = 0; k < per_element; ++k) field.insert(field.end(), {g[0], g[1], g[2]});
   }
   return field;
-}
-
-double length_of(std::span<const Index> nodes, std::span<const Vec2> points) {
-  double length = 0;
-  for (std::size_t k = 0; k + 1 < nodes.size(); ++k) length += (points[at(nodes[k + 1])] - points[at(nodes[k])]).norm();
-  return length;
 }
 
 // A side through corners and mid-side nodes with two more points an element: its sides are parabolas.
@@ -188,11 +182,11 @@ FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressR
       conformal_start(foil.nodes, problem, cut.strip_of_element, cut.strips, wanted.direction);
   foil.wanted = stretch_field(mesh, b, geometry::stress_rule(mesh.element, rule).size(), wanted);
   problem.stretch = foil.wanted;
-  std::vector<std::pair<std::vector<Index>, std::vector<Index>>> mating;
   for (const strips::Seam& seam : cut.seams) {
-    mating.emplace_back(flat_of(flat, seam.left, seam.nodes), flat_of(flat, seam.right, seam.nodes));
-    const auto& [left, right] = mating.back();
-    for (std::size_t k = 0; wanted.tied && k + 1 < left.size(); ++k) {
+    if (!wanted.tied) break;
+    const std::vector<Index> left = flat_of(flat, seam.left, seam.nodes);
+    const std::vector<Index> right = flat_of(flat, seam.right, seam.nodes);
+    for (std::size_t k = 0; k + 1 < left.size(); ++k) {
       problem.ties.push_back({{left[k], left[k + 1]}, {right[k], right[k + 1]}});
     }
   }
@@ -211,9 +205,6 @@ FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressR
   foil.flat = flattening::flatten(problem, start, wanted.options);
   check_unfolded(foil.nodes, problem, cut.strip_of_element, cut.strips, foil.flat.points);
   foil.stretches = flattening::stretches(problem, foil.flat.points);
-  for (const auto& [left, right] : mating) {
-    foil.seam_lengths.emplace_back(length_of(left, foil.flat.points), length_of(right, foil.flat.points));
-  }
   return foil;
 }
 

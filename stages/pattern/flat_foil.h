@@ -45,7 +45,6 @@ struct FlatFoil {
   std::vector<solver::flattening::PointStretch> stretches;     // [element][point]
   std::vector<std::vector<geometry::strips::StripSide>> sides; // per strip, nodes of the mesh
   std::vector<std::vector<std::vector<Index>>> flat_sides;     // the same, flat nodes
-  std::vector<std::pair<double, double>> seam_lengths;         // per seam: in its left and right strip, m
 };
 
 FlatFoil flatten_foil(const geometry::Mesh& mesh, Index block, geometry::StressRule rule,

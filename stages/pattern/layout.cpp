@@ -57,9 +57,8 @@ struct Trial {
 class Planner {
 public:
   Planner(const strips::Surface& surface, const workflow::PatternSettings& settings, std::string foil, int least)
-      : surface_(surface), settings_(settings), foil_(std::move(foil)),
-        least_(least), allowances_{settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
-        rough_(surface) {
+      : surface_(surface), settings_(settings), foil_(std::move(foil)), least_(least),
+        allowances_(allowances_of(settings)), rough_(surface) {
     rough_.fine = rough_.coarse;
   }
 
@@ -314,6 +313,10 @@ Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& 
   if (settings.curves.contains(foil)) return planner.given_curves();
   if (settings.direction) return planner.in_direction(*settings.direction);
   return planner.best_direction();
+}
+
+fabrication::Allowances allowances_of(const workflow::PatternSettings& settings) {
+  return {settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing};
 }
 
 double element_size(const std::vector<strips::Cut>& cuts) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/fabrication/fabrication.h"
 #include "geometry/strips/cut.h"
 #include "pipeline/workflow/settings.h"
 
@@ -26,6 +27,8 @@ struct Layout {
 // Throws GeometryError with the place and what would work.
 Layout lay_out(const geometry::strips::Surface& surface, const pipeline::workflow::PatternSettings& settings,
                const std::string& foil, int least = 2);
+
+geometry::fabrication::Allowances allowances_of(const pipeline::workflow::PatternSettings& settings);
 
 // Size of elements for all foils' cutting lines, m in plan: that of the mesh, or as much smaller, down to its half, as
 // the narrowest strip needs for two elements across.

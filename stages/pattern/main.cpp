@@ -144,10 +144,6 @@ Welded cut_once(const common::Start& start, const workflow::PatternSettings& set
   return welded;
 }
 
-geometry::fabrication::Allowances allowances_of(const workflow::PatternSettings& settings) {
-  return {settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing};
-}
-
 // Of the cut strips of a foil, m.
 double widest_cut(const Welded& welded, std::size_t b, const workflow::PatternSettings& settings) {
   double widest = 0;
@@ -176,11 +172,13 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
     Welded welded = cut_once(start, settings, chosen, surfaces, least);
     bool fits = true;
     for (const std::size_t b : chosen) {
-      if (attempts == 1 || widest_cut(welded, b, settings) <= usable) continue;
+      if (attempts == 1) break;
+      const double widest = widest_cut(welded, b, settings);
+      if (widest <= usable) continue;
       fits = false;
       least[b] = welded.cuts[b].strips + 1;
       base::say(fmt::format("{}: its strips came out up to {:.0f} mm wide, the roll has {:.0f} mm: one more",
-                            mesh.blocks[b].name, 1e3 * widest_cut(welded, b, settings), 1e3 * usable));
+                            mesh.blocks[b].name, 1e3 * widest, 1e3 * usable));
     }
     if (!fits) continue;
     weld(welded);
@@ -198,8 +196,7 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
   }
   const workflow::Roll& roll = settings.roll;
   return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
-    return fabricate(welded.state.mesh.blocks[b].name, sheets,
-                     {roll.weld / 2, settings.clamp_allowance, settings.notch_spacing},
+    return fabricate(welded.state.mesh.blocks[b].name, sheets, allowances_of(settings),
                      {roll.width, roll.selvedge, RollSheet{}.gap, !settings.roll_given});
   });
 }

@@ -5,30 +5,25 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <vector>
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <unistd.h>
+#include "tests/workflows/stages/programs.h"
+
+namespace pneuma::tests {
 
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
+class PatternScale : public InFolder {
+protected:
+  struct Cost {
+    double triangles = 0;        // a foil
+    double form = 0, strips = 0; // s of wall time
+    double memory = 0;           // bytes, of the pattern stage
+    int iterations = 0;          // of the flattening
+  };
 
-struct Cost {
-  double triangles = 0;        // a foil
-  double form = 0, strips = 0; // s of wall time
-  double memory = 0;           // bytes, of the pattern stage
-  int iterations = 0;          // of the flattening
-};
-
-Cost run(int across) {
-  std::string name = (fs::temp_directory_path() / "pneuma-scale-XXXXXX").string();
-  const fs::path folder = mkdtemp(name.data());
-  std::ofstream(folder / "w.yaml") << R"(pneuma: 1
+  Cost run(int across) const {
+    write(R"(pneuma: 1
 name: Scale
 materials: {foil: {law: elastic, E: 900 MPa, nu: 0.45}}
 site: {gravity: off}
@@ -38,28 +33,25 @@ cushion:
     - {name: upper, material: foil, thickness: 200 um}
     - {name: lower, material: foil, thickness: 200 um}
   chambers: [{name: main, between: [upper, lower]}]
-mesh: {element: T3, divisions: [)" << 2 * across
-                                   << ", " << across << R"(]}
+mesh: {element: T3, divisions: [)" +
+          std::to_string(2 * across) + ", " + std::to_string(across) + R"(]}
 stages:
   form: {run: formfind, from: mesh, gauge_pressure: {main: 400 Pa}, prestress: {all: 0.89 kN/m}}
   strips: {run: pattern, from: form, strips_per_foil: 6, direction: 0 deg, compensation: elastic}
-)";
-  const std::string command = "cd " + folder.string() + " && " + PNEUMA_PROGRAMS "/pneuma run w.yaml > log.txt 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0);
-  const auto summary = [&](const char* stage) {
-    return json::parse(std::ifstream(folder / "out" / "w" / stage / "summary.json"));
-  };
-  const json form = summary("form");
-  const json strips = summary("strips");
-  const Cost cost{form["mesh"]["elements"].get<double>() / 2, form["timing"]["total"], strips["timing"]["total"],
-                  strips["memory_peak"], strips["iterations"]};
-  fs::remove_all(folder);
-  std::printf("| %6.0f | %6.2f | %6.2f | %4.2f | %5.0f | %d |\n", cost.triangles, cost.form, cost.strips,
-              cost.strips / cost.form, cost.memory / 1e6, cost.iterations);
-  return cost;
-}
+)");
+    const Outcome outcome = pneuma("run w.yaml");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    const json form = summary("form");
+    const json strips = summary("strips");
+    const Cost cost{form["mesh"]["elements"].get<double>() / 2, form["timing"]["total"], strips["timing"]["total"],
+                    strips["memory_peak"], strips["iterations"]};
+    std::printf("| %6.0f | %6.2f | %6.2f | %4.2f | %5.0f | %d |\n", cost.triangles, cost.form, cost.strips,
+                cost.strips / cost.form, cost.memory / 1e6, cost.iterations);
+    return cost;
+  }
+};
 
-TEST(PatternScale, WorkDoesNotGrowWithTheMeshAndTimeHardlyMore) {
+TEST_F(PatternScale, WorkDoesNotGrowWithTheMeshAndTimeHardlyMore) {
   const bool all = std::getenv("PNEUMA_LONG") != nullptr;
   std::printf("triangles a foil | formfind, s | pattern, s | ratio | MB | iterations of the flattening\n");
   std::vector<Cost> costs;
@@ -74,3 +66,5 @@ TEST(PatternScale, WorkDoesNotGrowWithTheMeshAndTimeHardlyMore) {
 }
 
 } // namespace
+
+} // namespace pneuma::tests
