@@ -119,6 +119,17 @@ inline void shake(const solver::assembly::Model& model, std::vector<Vec3>& posit
   }
 }
 
+// The tangent of one foil as a dense matrix, of the last evaluation.
+inline base::MatX dense_tangent(const solver::assembly::System& system, std::size_t foil) {
+  const solver::assembly::FoilEquations& equations = system.foils()[foil];
+  const Index size = equations.pattern.size;
+  base::MatX dense(size, size);
+  for (Index j = 0; j < size; ++j) {
+    dense.col(j) = solver::linear::multiply(equations.pattern, equations.tangent, VecX::Unit(size, j));
+  }
+  return dense;
+}
+
 // Prints each iteration if VERBOSE stands in the environment.
 inline void tell(int step, const solver::path::Iteration& i) {
   if (std::getenv("VERBOSE") == nullptr) return;
