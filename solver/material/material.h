@@ -6,12 +6,21 @@
 
 #include "solver/material/mooney_rivlin.h"
 #include "solver/material/st_venant_kirchhoff.h"
+#include "solver/material/tension_field.h"
 
 namespace pneuma::solver::material {
 
-using Law = std::variant<StVenantKirchhoff, MooneyRivlin>;
+static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField<MooneyRivlin>>);
+
+using Law = std::variant<StVenantKirchhoff, MooneyRivlin, TensionField<StVenantKirchhoff>, TensionField<MooneyRivlin>>;
 
 int history_components(const Law& law);
+
+// What the material feels: of laws without a tension field the strain as it is, taut.
+Relaxed relaxed(const Law& law, const Vec3& strain, const double* history);
+
+bool has_tension_field(const Law& law);
+
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history);
 
 // Points of several elements that meet their material in one call: one instantiation per law, none per element type.
