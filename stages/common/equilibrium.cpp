@@ -195,7 +195,7 @@ private:
 
   void finish(assembly::Configuration& c, const path::PathResult& path_result) {
     system_.evaluate(c, true);
-    const path::Newton::Stability stability = newton_.stability(c);
+    const path::Stability stability = newton_.tangent().stability(c, nullptr);
     const std::vector<FoilResults> foils = results(c);
     const bool reached = path_result.end == path::PathEnd::reached;
     const std::string verdict = reached                                     ? "converged"
