@@ -294,7 +294,12 @@ private:
 } // namespace
 
 solver::material::Law law_of(const pipeline::workflow::Material& material) {
-  return solver::material::StVenantKirchhoff{material.law.E, material.law.nu};
+  const auto* elastic = std::get_if<pipeline::workflow::ElasticLaw>(&material.law);
+  if (elastic == nullptr || material.tension_field) {
+    throw base::InputError(fmt::format("{}: material `{}`: {} is not wired", to_string(material.mark), material.name,
+                                       elastic == nullptr ? "its law" : "`tension_field: on`"));
+  }
+  return solver::material::StVenantKirchhoff{elastic->E, elastic->nu};
 }
 
 assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to) {
@@ -326,6 +331,9 @@ assembly::Model make_model(const Start& start, const State& state, double weight
   model.dead_from = weight_from * all;
   model.dead_to = weight_to * all;
   for (const pipeline::state::Chamber& chamber : state.chambers) {
+    if (chamber.connected_to >= 0) {
+      throw base::InputError(fmt::format("chamber `{}`: `connected_to` is not wired", chamber.name));
+    }
     model.chambers.push_back({chamber.name, chamber.outer, chamber.inner, chamber.dead_volume,
                               solver::chamber::Regulated{chamber.gauge_pressure, chamber.gauge_pressure},
                               chamber.ambient_pressure});

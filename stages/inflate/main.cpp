@@ -45,6 +45,9 @@ int run(int argc, char** argv) {
   common::Drive drive;
   drive.state = start.state;
   drive.contact_stops = settings.contact_stops;
+  if (!std::holds_alternative<workflow::LoadControl>(settings.control.kind) || start.stage().options.max_steps) {
+    throw base::InputError("controls other than load and `max_steps` are not wired");
+  }
   drive.steps = settings.control.steps;
 
   const bool from_form = start.stage().from_run == "formfind";

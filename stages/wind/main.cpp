@@ -112,6 +112,9 @@ int run(int argc, char** argv) {
   common::Drive drive;
   drive.state = start.state;
   drive.contact_stops = settings.contact_stops;
+  if (!std::holds_alternative<workflow::LoadControl>(settings.control.kind) || start.stage().options.max_steps) {
+    throw base::InputError("controls other than load and `max_steps` are not wired");
+  }
   drive.steps = settings.control.steps;
   drive.model = common::make_model(start, drive.state, 1, 1);
   for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
