@@ -22,7 +22,8 @@ enum class Mark : std::uint8_t { none, circle, square, triangle, diamond };
 struct Axis {
   std::string label;
   Scale scale = Scale::linear;
-  std::optional<std::array<double, 2>> range; // what is shown; without it all points, and linear axes from tick to tick
+  std::optional<std::array<double, 2>> range =
+      {}; // what is shown; without it all points, and linear axes from tick to tick
 };
 
 struct Curve {

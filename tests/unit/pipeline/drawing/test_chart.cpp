@@ -49,8 +49,8 @@ std::vector<Vec2> circles_in(const std::string& svg) {
 
 Chart example() {
   return {"Deflection <B8> & \"more\"",
-          {"pressure, kPa", Scale::linear, {}},
-          {"deflection, mm", Scale::linear, {}},
+          {"pressure, kPa"},
+          {"deflection, mm"},
           {{"exact", {{0, 0}, {100, 33}, {400, 53}}, Stroke::dashed, Mark::none, 0},
            {"T6 & Q9", {{0, 0}, {100, 33}, {250, 45}, {400, 53}}, Stroke::solid, Mark::circle, 1}}};
 }
