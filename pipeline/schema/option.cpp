@@ -428,10 +428,10 @@ private:
         value.read_as = &kind;
         return value;
       }
-      if (kind.type == Type::choice && scalars > 1) {
+      if (kind.type == Type::choice) {
         words = names_of(kind.members);
         if (std::find(words.begin(), words.end(), node.text) == words.end()) {
-          if (node.text.find_first_of("+-.0123456789") == 0) continue;
+          if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
           break;
         }
       }

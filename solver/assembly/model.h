@@ -37,6 +37,9 @@ struct Chamber {
   double dead_volume = 0; // m3
   chamber::Gas gas;
   double ambient = 0; // Pa absolute; a closed law's own ambient pressure goes before it
+  // Number of the chamber whose air this one shares through a duct: one pressure, one law (that chamber's), the sum of
+  // the volumes; -1: an air of its own. That chamber has an air of its own.
+  Index connected_to = -1;
 };
 
 // A pressure on part of a foil, along its positive normal, that follows it.
@@ -55,6 +58,9 @@ struct Model {
   std::vector<Ramp> face_pressure; // per block: pressure on the whole foil beside the chambers', along its normal, Pa
   std::vector<PressureZone> zones;
   VecX dead_from, dead_to; // [3 node + component], N: forces that keep their direction
+  // Where volumes are measured from; any point serves closed chambers (none: the middle of the nodes). Where a rim is
+  // free to move in a plane (symmetry), the plane stands for the missing wall and must contain this point.
+  std::optional<Vec3> origin;
 };
 
 } // namespace pneuma::solver::assembly

@@ -28,6 +28,7 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
   const geometry::Mesh& mesh = model_.mesh;
   origin_ = Vec3::Zero();
   for (const Vec3& x : mesh.nodes) origin_ += x / static_cast<double>(mesh.nodes.size());
+  origin_ = model_.origin.value_or(origin_);
 
   foil_of_block_.assign(mesh.blocks.size(), -1);
   base_volume_.assign(mesh.blocks.size(), 0.0);
@@ -108,6 +109,18 @@ double System::net_pressure(Index block, const Configuration& configuration) con
   return pressure;
 }
 
+double System::net_pressure_rate(Index block) const {
+  const Ramp& face = model_.face_pressure[static_cast<std::size_t>(block)];
+  double rate = face[1] - face[0];
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    const double p =
+        chamber::prescribed_rate(model_.chambers[static_cast<std::size_t>(air_of(static_cast<Index>(c)))].gas);
+    if (model_.chambers[c].outer == block) rate += p;
+    if (model_.chambers[c].inner == block) rate -= p;
+  }
+  return rate;
+}
+
 void System::evaluate_foil(FoilEquations& foil, const Configuration& configuration, bool with_tangent) {
   const auto index = static_cast<std::size_t>(&foil - foils_.data());
   const auto coordinates = static_cast<Eigen::Index>(3 * configuration.positions.size());
@@ -116,7 +129,8 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
   foil.energy = 0;
   foil.internal.setZero(coordinates);
   foil.external.setZero(coordinates);
-  VecX unit = VecX::Zero(coordinates); // force of a unit pressure
+  VecX unit = VecX::Zero(coordinates);  // force of a unit pressure
+  VecX drive = VecX::Zero(coordinates); // d force of the zones / d load factor
   if (with_tangent) foil.tangent.assign(foil.pattern.row.size(), 0.0);
 
   const std::span<const Index> connectivity = foil.membrane.connectivity;
@@ -167,10 +181,11 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
       for (Index e = 0; e < elements; ++e) {
         const auto begin = static_cast<std::size_t>(zone.offset[static_cast<std::size_t>(e)]);
         const auto end = static_cast<std::size_t>(zone.offset[static_cast<std::size_t>(e) + 1]);
-        if (begin == end || pressure == 0) continue;
+        if (begin == end) continue;
         geometry::pressure_element<E>(positions_of(e), std::span(zone.points).subspan(begin, end - begin), with_tangent,
                                       p);
         add(e, p.force.data(), pressure, foil.external);
+        add(e, p.force.data(), zone.pressure[1] - zone.pressure[0], drive);
         if (with_tangent) subtract_load_stiffness(e, pressure);
       }
     }
@@ -189,12 +204,15 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
   const auto unknowns = static_cast<Eigen::Index>(foil.coordinate.size());
   foil.residual.resize(unknowns);
   foil.pressure_gradient.resize(unknowns);
+  foil.load_gradient.resize(unknowns);
+  const double rate = net_pressure_rate(foil.block);
   const double lambda = configuration.load_factor;
   for (Eigen::Index u = 0; u < unknowns; ++u) {
     const Index k = foil.coordinate[static_cast<std::size_t>(u)];
     foil.external[k] += (1 - lambda) * model_.dead_from[k] + lambda * model_.dead_to[k];
     foil.residual[u] = foil.internal[k] - foil.external[k];
     foil.pressure_gradient[u] = unit[k];
+    foil.load_gradient[u] = rate * unit[k] + drive[k] + model_.dead_to[k] - model_.dead_from[k];
   }
 }
 
@@ -202,6 +220,10 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
   for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
     double& pressure = configuration.pressures[static_cast<Eigen::Index>(c)];
     pressure = chamber::prescribed_pressure(model_.chambers[c].gas, pressure, configuration.load_factor);
+  }
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) { // a duct: one pressure
+    const Index air = air_of(static_cast<Index>(c));
+    configuration.pressures[static_cast<Eigen::Index>(c)] = configuration.pressures[air];
   }
   load_factor_ = configuration.load_factor;
   base::parallel_chunks(threads_, foils_.size(),
@@ -247,9 +269,30 @@ double System::chamber_volume(Index chamber) const {
   return below(c.outer) - below(c.inner) + c.dead_volume;
 }
 
+Index System::air_of(Index chamber) const {
+  const Index other = model_.chambers[static_cast<std::size_t>(chamber)].connected_to;
+  return other < 0 ? chamber : other;
+}
+
 chamber::GasLine System::gas_line(Index chamber, const Configuration& configuration) const {
+  if (air_of(chamber) != chamber) return {};
+  double volume = 0;
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    if (air_of(static_cast<Index>(c)) == chamber) volume += chamber_volume(static_cast<Index>(c));
+  }
   return chamber::gas_line(model_.chambers[static_cast<std::size_t>(chamber)].gas, configuration.pressures[chamber],
-                           chamber_volume(chamber), configuration.load_factor);
+                           volume, configuration.load_factor);
+}
+
+MatX System::volume_gradients(Index foil) const {
+  const FoilEquations& equations = foils_[static_cast<std::size_t>(foil)];
+  MatX q = MatX::Zero(equations.pattern.size, static_cast<Eigen::Index>(model_.chambers.size()));
+  for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
+    const Index air = air_of(static_cast<Index>(c));
+    if (model_.chambers[c].outer == equations.block) q.col(air) += equations.pressure_gradient;
+    if (model_.chambers[c].inner == equations.block) q.col(air) -= equations.pressure_gradient;
+  }
+  return q;
 }
 
 VecX System::support_forces() const {

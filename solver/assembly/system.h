@@ -27,6 +27,7 @@ struct FoilEquations {
   std::vector<double> tangent;   // values of the pattern, N/m: internal + pressure (symmetric part) + zones
   VecX residual;                 // internal - external, free unknowns, N
   VecX pressure_gradient;        // d volume / d unknown = force of a unit pressure, m2
+  VecX load_gradient;            // d external / d load factor at the pressures that are unknown, free unknowns, N
   VecX internal, external;       // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
   double volume = 0;             // below the foil, m3
   double energy = 0;             // J
@@ -61,9 +62,15 @@ public:
   // Sets the regulated pressures for the load factor and evaluates; with_tangent also fills tangents.
   Balance evaluate(Configuration& configuration, bool with_tangent);
 
+  // The chamber whose air a chamber has: itself, or the one that it is connected to.
+  Index air_of(Index chamber) const;
+
   // Of the last evaluation:
-  double chamber_volume(Index chamber) const; // m3, dead volume included
+  double chamber_volume(Index chamber) const; // m3, dead volume included; of this chamber alone
+  // Of the air of a chamber and those connected to it; a connected one has none of its own (no unknown pressure).
   chamber::GasLine gas_line(Index chamber, const Configuration& configuration) const;
+  // d volume of chamber / d unknowns of a foil, one column an air (all zero for a connected chamber), m2
+  MatX volume_gradients(Index foil) const;
   // Force of the frame on the foils at each held coordinate, [3 node + component], N.
   VecX support_forces() const;
 
@@ -77,6 +84,7 @@ public:
 private:
   void evaluate_foil(FoilEquations& foil, const Configuration& configuration, bool with_tangent);
   double net_pressure(Index block, const Configuration& configuration) const;
+  double net_pressure_rate(Index block) const; // by the load factor, at the pressures that are unknown, Pa
 
   Model model_;
   int threads_;

@@ -33,12 +33,16 @@ GasLine gas_line(const Gas& gas, double gauge_pressure, double volume, double lo
                     log_ratio(temperature, closed->temperature0);
     line.residual = line.relative * volume / closed->kappa;
     line.compliance = volume / (closed->kappa * absolute);
+    line.drive = ((closed->ambient_to - closed->ambient_from) / absolute -
+                  (closed->temperature - closed->temperature0) / temperature) *
+                 volume / closed->kappa;
   } else if (const auto* prescribed = std::get_if<PrescribedVolume>(&gas)) {
     line.pressure_is_unknown = true;
     const double wanted = std::lerp(prescribed->from, prescribed->to, load_factor);
     const double scale = std::max(prescribed->from, prescribed->to); // `wanted` may start from a flat chamber's 0
     line.possible = prescribed->from >= 0 && prescribed->to > 0 && std::isfinite(volume);
     line.residual = volume - wanted;
+    line.drive = prescribed->from - prescribed->to;
     line.relative = line.possible ? line.residual / scale : 0.0;
   }
   return line;
@@ -49,6 +53,11 @@ double prescribed_pressure(const Gas& gas, double current, double load_factor) {
     return std::lerp(regulated->gauge_from, regulated->gauge_to, load_factor);
   }
   return current;
+}
+
+double prescribed_rate(const Gas& gas) {
+  const auto* regulated = std::get_if<Regulated>(&gas);
+  return regulated != nullptr ? regulated->gauge_to - regulated->gauge_from : 0.0;
 }
 
 double ambient_pressure(const Gas& gas, double otherwise, double load_factor) {

@@ -30,12 +30,13 @@ struct PrescribedVolume {
 
 using Gas = std::variant<Regulated, Closed, PrescribedVolume>;
 
-// The chamber's line of the bordered system: q . du + compliance dp = -residual, where q = dV/du.
+// The chamber's line of the bordered system, with q = dV/du: q . du + compliance dp + drive dlambda = -residual.
 struct GasLine {
   bool pressure_is_unknown = false;
   double residual = 0;   // m3
   double compliance = 0; // -dV/dp of the gas alone, m3/Pa, >= 0
   double relative = 0;   // residual as a relative error of absolute pressure or volume, -
+  double drive = 0;      // d residual / d load factor, m3
   bool possible = true;  // false: closed air without volume, pressure or temperature, or a volume of 0 is the goal
 };
 
@@ -45,6 +46,9 @@ GasLine gas_line(const Gas& gas, double gauge_pressure, double volume, double lo
 
 // Gauge pressure that a regulated chamber has at a load factor; other laws keep `current`.
 double prescribed_pressure(const Gas& gas, double current, double load_factor);
+
+// Its derivative by the load factor, Pa; 0 of other laws.
+double prescribed_rate(const Gas& gas);
 
 // Ambient pressure at a load factor, as far as the law knows it.
 double ambient_pressure(const Gas& gas, double otherwise, double load_factor);

@@ -2,6 +2,7 @@
 #include "solver/element/membrane.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/shape_functions.h"
 #include "geometry/volume.h"
@@ -125,9 +126,13 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
       material::evaluate(membrane.law, one);
       state.stress = one.stress[0];
       state.thickness_ratio = material::thickness_stretch(membrane.law, one.strain[0], one.old_history);
+      const material::Relaxed relaxed = material::relaxed(membrane.law, one.strain[0], one.old_history);
+      state.surface = relaxed.surface;
 
-      const Vec3 normal = state.deformation.col(0).cross(state.deformation.col(1)); // length: area ratio
-      const double volume_ratio = normal.norm() * state.thickness_ratio;
+      const Vec3& felt = relaxed.strain;
+      const double area_ratio = std::sqrt((1 + 2 * felt[0]) * (1 + 2 * felt[1]) - felt[2] * felt[2]);
+      const double volume_ratio = area_ratio * state.thickness_ratio;
+      const Vec3 normal = state.deformation.col(0).cross(state.deformation.col(1));
       state.axes.col(0) = state.deformation.col(0).normalized();
       state.axes.col(1) = normal.normalized().cross(state.axes.col(0));
       const base::Mat2 F = state.axes.transpose() * state.deformation;

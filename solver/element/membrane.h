@@ -37,11 +37,12 @@ Index membrane_forces(const Membrane& membrane, std::span<const Vec3> positions,
 
 // State of one stress point, for results.
 struct PointState {
-  base::Mat32 deformation;    // F, 3 x 2: stress-free material frame -> space
-  Vec3 stress;                // second Piola-Kirchhoff (S11, S22, S12), Pa
-  base::Mat2 cauchy;          // in the plane spanned by `axes`, Pa
-  base::Mat32 axes;           // orthonormal, tangent to the surface; the first along the carried first material axis
-  double thickness_ratio = 1; // current / nominal
+  base::Mat32 deformation; // F, 3 x 2: stress-free material frame -> space
+  Vec3 stress;             // second Piola-Kirchhoff (S11, S22, S12), Pa
+  base::Mat2 cauchy;       // in the plane spanned by `axes`, Pa; of the foil itself, whose wrinkles lie over each other
+  base::Mat32 axes;        // orthonormal, tangent to the surface; the first along the carried first material axis
+  double thickness_ratio = 1; // current / nominal, of the foil itself
+  material::Surface surface = material::Surface::taut;
 };
 
 // Deformation and stress at all points [element][point]; the accepted history is read, not changed.

@@ -83,7 +83,7 @@ bool Cholesky::factorize(const SymmetricPattern& pattern, std::span<const double
 }
 
 MatX Cholesky::solve(const MatX& b) {
-  if (b.rows() == 0) return b;
+  if (b.size() == 0) return b;
   cholmod_dense right{};
   right.nrow = static_cast<std::size_t>(b.rows());
   right.ncol = static_cast<std::size_t>(b.cols());

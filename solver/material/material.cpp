@@ -7,6 +7,28 @@ int history_components(const Law& law) {
   return std::visit([]<Material M>(const M&) { return M::history_components; }, law);
 }
 
+Relaxed relaxed(const Law& law, const Vec3& strain, const double* history) {
+  return std::visit(
+      [&]<Material M>(const M& m) -> Relaxed {
+        if constexpr (requires { m.relaxed(strain, history); }) {
+          return m.relaxed(strain, history);
+        } else {
+          return {Surface::taut, strain};
+        }
+      },
+      law);
+}
+
+bool has_tension_field(const Law& law) {
+  return std::visit(
+      []<Material M>(const M& m) {
+        return requires {
+          m.relaxed(Vec3(), nullptr);
+        };
+      },
+      law);
+}
+
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history) {
   return std::visit([&]<Material M>(const M& m) { return m.thickness_stretch(strain, history); }, law);
 }

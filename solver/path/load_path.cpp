@@ -5,32 +5,99 @@
 
 #include <fmt/format.h>
 
+#include "geometry/volume.h"
+#include "solver/path/controlled_path.h"
+
 namespace pneuma::solver::path {
 
+namespace {
+
+// A limit point within `reach` of the load beyond a good state, where load control got stuck.
+std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const Configuration& from, double reach) {
+  ControlledPathOptions options;
+  options.first_step = reach;
+  options.max_steps = 12;
+  options.only_looking = true;
+  ArcLengthPath arc;
+  arc.load_factor = from.load_factor + 2 * reach;
+  arc.after_peak = 1 - 1e-9;
+  Configuration at = from;
+  for (const CriticalPoint& point : follow_control(system, newton, at, arc, options, {}).critical) {
+    if (point.kind == CriticalPoint::Kind::limit) return point;
+  }
+  return std::nullopt;
+}
+
+std::string pressures_of(const System& system, const CriticalPoint& point) {
+  std::string text;
+  for (std::size_t c = 0; c < system.model().chambers.size(); ++c) {
+    text += fmt::format("{}{}: {:.6g} Pa", text.empty() ? "" : ", ", system.model().chambers[c].name,
+                        point.pressures[static_cast<Eigen::Index>(c)]);
+  }
+  return text;
+}
+
+} // namespace
+
+bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
+  const geometry::Mesh& mesh = system.model().mesh;
+  bool turned = false;
+  geometry::dispatch(mesh.element, [&]<geometry::ElementType E>() {
+    const auto middle = geometry::corners_per_element(E) == 3 ? geometry::shape_functions<E>(1.0 / 3, 1.0 / 3)
+                                                              : geometry::shape_functions<E>(0, 0);
+    const auto normal = [&](std::span<const Index> nodes, const Configuration& at) -> Vec3 {
+      const base::Mat32 g = geometry::gather<E>(nodes, at.positions) * middle.derivative;
+      return g.col(0).cross(g.col(1));
+    };
+    for (const assembly::FoilEquations& foil : system.foils()) {
+      const geometry::Block& block = mesh.blocks[static_cast<std::size_t>(foil.block)];
+      for (Index e = 0; e < mesh.element_count(block) && !turned; ++e) {
+        const std::span<const Index> nodes = mesh.element_nodes(block, e);
+        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0;
+      }
+    }
+  });
+  return turned;
+}
+
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
-                       const std::function<Verdict(const Step&, const Configuration&)>& accepted,
-                       const std::function<void(int, const Iteration&)>& report) {
+                       const Accept& accepted, const Report& report) {
   PathResult result;
   const double part = 1.0 / options.parts;
   double length = part;
   int part_number = 1; // the part being walked
   constexpr int easy_iterations = 8;
   while (part_number <= options.parts) {
+    if (result.steps == options.max_steps) {
+      system.evaluate(configuration, true);
+      result.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options.max_steps, result.load_factor);
+      return result;
+    }
     const double goal = part_number == options.parts ? 1.0 : part * part_number;
     const double left = goal - result.load_factor;
     // no sliver of a step at the end of a part
     const bool to_goal = length > 0.999 * left;
     Configuration trial = configuration;
     trial.load_factor = to_goal ? goal : result.load_factor + (length > 0.6 * left ? 0.5 * left : length);
-    const Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
+    Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
     });
     if (!outcome.converged) {
-      length = (trial.load_factor - result.load_factor) / 4;
+      const double reach = trial.load_factor - result.load_factor;
+      length = reach / 4;
       if (length < options.smallest_step) {
         system.evaluate(configuration, true);
         result.reason =
             fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result.load_factor, outcome.reason);
+        if (const auto limit = limit_ahead(system, newton, configuration, reach)) {
+          result.critical.push_back(*limit);
+          result.critical.back().step = result.steps;
+          result.reason =
+              fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
+                          "volume, displacement or arc_length goes on",
+                          limit->load_factor, pressures_of(system, *limit));
+        }
+        system.evaluate(configuration, true);
         return result;
       }
       continue;

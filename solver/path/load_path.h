@@ -5,11 +5,6 @@
 
 namespace pneuma::solver::path {
 
-struct LoadPathOptions {
-  int parts = 1;               // the path is reported at `parts` equal parts; between them steps are automatic
-  double smallest_step = 1e-5; // of the load factor
-};
-
 // An accepted step.
 struct Step {
   int number = 0;
@@ -22,18 +17,43 @@ enum class Verdict : std::uint8_t { go_on, stop };
 
 enum class PathEnd : std::uint8_t { reached, stopped, stuck };
 
+// A point of the path where the tangent is singular.
+struct CriticalPoint {
+  enum class Kind : std::uint8_t {
+    limit,       // the load has an extreme: nothing nearby carries more (or less)
+    bifurcation, // another path crosses
+  };
+  Kind kind = Kind::limit;
+  double load_factor = 0;
+  VecX pressures; // gauge, of each chamber, Pa
+  int step = 0;   // a limit point is a step of its own; a bifurcation lies before this step
+};
+
 struct PathResult {
   PathEnd end = PathEnd::stuck;
   std::string reason; // why stuck
   int steps = 0;
-  double load_factor = 0; // of the last good state
+  double load_factor = 0;              // of the last good state
+  std::vector<CriticalPoint> critical; // in their order
+  std::optional<Held> held;            // what the control held last, for the count of what is stable under it
+};
+
+using Accept = std::function<Verdict(const Step&, const Configuration&)>;
+using Report = std::function<void(int step, const Iteration&)>;
+
+struct LoadPathOptions {
+  int parts = 1;               // the path is reported at `parts` equal parts; between them steps are automatic
+  double smallest_step = 1e-5; // of the load factor
+  int max_steps = 100000;
 };
 
 // Load control: from load factor 0 to 1, whole parts first, cut back by four on any failure, doubled after easy
 // success. `accepted` sees every accepted step, with the system evaluated there, and may stop the path; `configuration`
-// ends as the last accepted one.
+// ends as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
-                       const std::function<Verdict(const Step&, const Configuration&)>& accepted,
-                       const std::function<void(int step, const Iteration&)>& report = {});
+                       const Accept& accepted, const Report& report = {});
+
+// No element may turn by more than a right angle in one step: it would have been turned inside out on the way.
+bool turned_over(const System& system, const Configuration& before, const Configuration& after);
 
 } // namespace pneuma::solver::path

@@ -2,18 +2,11 @@
 #pragma once
 
 #include <functional>
-#include <vector>
+#include <string>
 
-#include "solver/assembly/system.h"
+#include "solver/path/control.h"
 
 namespace pneuma::solver::path {
-
-using assembly::Configuration;
-using assembly::System;
-using base::Index;
-using base::MatX;
-using base::Vec3;
-using base::VecX;
 
 struct NewtonOptions {
   double tolerance = 1e-9;    // |residual| / force scale; gas laws to the same relative error
@@ -31,21 +24,7 @@ struct Iteration {
   double shift = 0;       // N/m, largest artificial tension that acted in the tangent (0: none)
 };
 
-// Work and time of everything a solver object did.
-struct Work {
-  int iterations = 0;
-  int factorizations = 0; // of one foil's tangent
-  int line_searches = 0;
-  double assembly = 0, factorization = 0, solve = 0; // s of wall time
-  double analysis = 0;
-};
-
-// Newton's method on the bordered system of a cushion: one Cholesky factor per foil, side by side; the chambers are a
-// few rows and columns around them (block elimination, Sherman-Morrison-Woodbury in the case of closed air).
-//
-// Where a tangent is not positive definite (flat or slack foils) an artificial tension is added to it,
-// mu int grad N . grad N, as small as makes it so. It acts on the way only: the residual knows nothing of it, so that
-// an accepted state is in equilibrium without it.
+// Newton's method for a cushion in equilibrium, on its bordered tangent.
 class Newton {
 public:
   Newton(System& system, NewtonOptions options);
@@ -57,36 +36,27 @@ public:
     double residual = 0; // relative, at the end
   };
   // Solves at configuration.load_factor, starting from the configuration; on failure it is left where it got to.
+  // Steps go down in energy: an artificial tension acts in the tangent where it must (never in the residual, so that an
+  // accepted state is in equilibrium without it), and a line search guards each step.
   Outcome solve(Configuration& configuration, const std::function<void(const Iteration&)>& report = {});
 
-  // Negative eigenvalues of the tangent at the last evaluated configuration, counted without shift; none if the count
-  // is not safe (a foil is not positive definite, or has a pivot within 1e-10 of zero).
-  struct Stability {
-    std::optional<int> load_held;    // gas borders only
-    std::optional<int> control_held; // all borders; load control: the same
-  };
-  Stability stability(const Configuration& configuration);
+  // Solves with the load factor unknown and a quantity held at `wanted` instead, by plain steps with the tangent as it
+  // is: stable or not, from a start nearby. At most `max_iterations` of its own, since a path is better cut.
+  Outcome solve(Configuration& configuration, const Held& held, double wanted, int max_iterations,
+                const std::function<void(const Iteration&)>& report = {});
 
+  Tangent& tangent() { return tangent_; }
+  const NewtonOptions& options() const { return options_; }
   const Work& work() const { return work_; }
 
 private:
-  struct Direction {
-    std::vector<VecX> du; // per foil
-    VecX dp;              // per chamber, 0 where prescribed
-    double shift = 0;     // largest of all foils
-  };
-  bool factorize(const Configuration& configuration);
-  Direction direction(const Configuration& configuration);
-  double slope(const Direction& direction) const;
-  Configuration moved(const Configuration& from, const Direction& direction, double length) const;
-  MatX borders(std::size_t foil) const; // d volume of chamber / d unknowns of the foil, one column a chamber
-  double reference_tension(const Configuration& configuration) const;
+  assembly::Balance evaluate(Configuration& configuration, bool with_tangent);
+  double slope(const Change& direction) const;
 
   System& system_;
   NewtonOptions options_;
-  std::vector<linear::Cholesky> factors_;
-  std::vector<double> shift_; // per foil, N/m
   Work work_;
+  Tangent tangent_;
 };
 
 } // namespace pneuma::solver::path

@@ -35,6 +35,7 @@ struct Cushion {
   double prestress = 0;                     // N/m at the given shape (predeformation); 0: free of stress there
   std::vector<double> thickness{250e-6};    // m, one for all or one a foil
   solver::material::StVenantKirchhoff law{900e6, 0.45};
+  bool tension_field = false;
   Vec3 place = Vec3::Zero();               // m, of the plan's centre
   std::function<void(Vec3&)> distort = {}; // moves the plan's nodes before anything else; edges onto themselves
 };
@@ -81,12 +82,14 @@ inline solver::assembly::Model model_of(const Cushion& cushion, double pressure)
     }
   }
   for (Vec3& x : mesh.nodes) x += cushion.place;
+  const material::Law law = cushion.tension_field
+                                ? material::Law(material::TensionField<material::StVenantKirchhoff>{cushion.law})
+                                : material::Law(cushion.law);
   for (std::size_t b = 0; b < cushion.heights.size(); ++b) {
     const double thickness = cushion.thickness.size() > 1 ? cushion.thickness[b] : cushion.thickness[0];
     std::vector<double> predeformation;
     if (cushion.prestress != 0) {
-      const auto g =
-          material::predeformation(cushion.law, thickness, Vec3(cushion.prestress, cushion.prestress, 0)).value();
+      const auto g = material::predeformation(law, thickness, Vec3(cushion.prestress, cushion.prestress, 0)).value();
       const std::size_t points = static_cast<std::size_t>(mesh.element_count(mesh.blocks[b])) *
                                  geometry::stress_rule(cushion.element, cushion.rule).size();
       for (std::size_t i = 0; i < points; ++i) predeformation.insert(predeformation.end(), {g[0], g[1], g[2]});
@@ -94,7 +97,7 @@ inline solver::assembly::Model model_of(const Cushion& cushion, double pressure)
     const std::vector<double> corners = element::corner_coordinates(mesh.blocks[b].connectivity, mesh.nodes);
     model.foils.push_back(
         assembly::Foil{element::make_reference(cushion.element, cushion.rule, corners, Vec3(1, 0, 0), predeformation),
-                       cushion.law, thickness});
+                       law, thickness});
   }
   if (cushion.base) model.foils.emplace_back();
   for (std::size_t c = 0; c + 1 < mesh.blocks.size(); ++c) {
@@ -117,6 +120,17 @@ inline void shake(const solver::assembly::Model& model, std::vector<Vec3>& posit
       if (model.fixed[3 * i + c] == 0) positions[i][static_cast<Eigen::Index>(c)] += d(random);
     }
   }
+}
+
+// The tangent of one foil as a dense matrix, of the last evaluation.
+inline base::MatX dense_tangent(const solver::assembly::System& system, std::size_t foil) {
+  const solver::assembly::FoilEquations& equations = system.foils()[foil];
+  const Index size = equations.pattern.size;
+  base::MatX dense(size, size);
+  for (Index j = 0; j < size; ++j) {
+    dense.col(j) = solver::linear::multiply(equations.pattern, equations.tangent, VecX::Unit(size, j));
+  }
+  return dense;
 }
 
 // Prints each iteration if VERBOSE stands in the environment.

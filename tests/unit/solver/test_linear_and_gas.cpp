@@ -9,6 +9,7 @@
 
 #include "solver/chamber/gas.h"
 #include "solver/linear/cholesky.h"
+#include "solver/linear/ldlt.h"
 #include "tests/unit/finite_differences.h"
 
 namespace {
@@ -79,6 +80,26 @@ TEST(SymmetricPattern, ScatteredElementsMultiplyLikeTheDenseSum) {
   const VecX x = some_vector(Assembled::size);
   const VecX dense = a.dense * x;
   EXPECT_LT(relative_difference(linear::multiply(a.made.pattern, a.values, x), dense), 1e-14);
+}
+
+TEST(Ldlt, SolvesAndCountsNegativeEigenvaluesOfMatricesThatAreNotDefinite) {
+  for (const double diagonal : {0.5, -0.4, -1.0, -5.0}) {
+    const Assembled a(diagonal);
+    linear::Ldlt factor(a.made.pattern);
+    ASSERT_TRUE(factor.factorize(a.made.pattern, a.values));
+    const VecX eigenvalues = Eigen::SelfAdjointEigenSolver<MatX>(a.dense).eigenvalues();
+    EXPECT_EQ(factor.negative_pivots(), (eigenvalues.array() < 0).count()) << diagonal;
+    MatX b(Assembled::size, 2);
+    b << some_vector(Assembled::size), VecX::Unit(Assembled::size, 4);
+    EXPECT_LT(relative_difference(factor.solve(b), a.dense.fullPivLu().solve(b)), 1e-11) << diagonal;
+  }
+}
+
+TEST(Ldlt, SaysThatAMatrixIsSingular) {
+  const Assembled a(0); // unknown 11 belongs to no element
+  linear::Ldlt factor(a.made.pattern);
+  EXPECT_FALSE(factor.factorize(a.made.pattern, a.values));
+  EXPECT_GE(factor.null_pivots(), 1);
 }
 
 TEST(Cholesky, SolvesSeveralColumnsLikeTheDenseMatrix) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+
+#include "solver/material/concept.h"
+
+namespace pneuma::solver::material {
+
+// St. Venant-Kirchhoff, isotropic, plane stress: S = E/(1-nu^2) [E + nu ...] (Holzapfel 2000, eq. 6.151, with the
+// thickness stress condensed).
+struct StVenantKirchhoff {
+  static constexpr int history_components = 0;
+
+  double youngs_modulus = 0; // Pa
+  double poissons_ratio = 0; // -
+
+  Mat3 stiffness() const {
+    const double c = youngs_modulus / (1 - poissons_ratio * poissons_ratio);
+    Mat3 d;
+    d << c, c * poissons_ratio, 0, c * poissons_ratio, c, 0, 0, 0, c * (1 - poissons_ratio) / 2;
+    return d;
+  }
+
+  Status evaluate(const Vec3& strain, const double*, double*, double, Vec3& stress, Mat3& tangent,
+                  double& energy) const noexcept {
+    tangent = stiffness();
+    stress = tangent * strain;
+    energy = 0.5 * stress.dot(strain);
+    return Status::ok;
+  }
+
+  // E33 = -nu/(1-nu) (E11 + E22) follows from S33 = 0; NaN where the law has no such thickness
+  double thickness_stretch(const Vec3& strain, const double*) const noexcept {
+    return std::sqrt(1 - 2 * poissons_ratio / (1 - poissons_ratio) * (strain[0] + strain[1]));
+  }
+};
+static_assert(Material<StVenantKirchhoff>);
+
+} // namespace pneuma::solver::material

@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/path/controlled_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace pneuma::solver::path {
+
+namespace {
+
+constexpr double cut = 4;               // a failed step is made so much shorter
+constexpr double wanted_iterations = 4; // of a step
+constexpr int most_bifurcations = 10;   // that are located on a path
+
+Configuration between(const Configuration& a, const Configuration& b, double part) {
+  Configuration c = a;
+  for (std::size_t i = 0; i < c.positions.size(); ++i) c.positions[i] += part * (b.positions[i] - a.positions[i]);
+  c.pressures += part * (b.pressures - a.pressures);
+  c.load_factor += part * (b.load_factor - a.load_factor);
+  return c;
+}
+
+// What a step holds.
+struct Goal {
+  Held held;
+  double from = 0, to = 0;
+  bool end_of_part = false;
+};
+
+class Walk {
+public:
+  Walk(System& system, Newton& newton, Configuration& at, const PathControl& control,
+       const ControlledPathOptions& options, const Accept& accepted, const Report& report)
+      : system_(system), newton_(newton), at_(at), control_(control), options_(options), accepted_(accepted),
+        report_(report) {}
+
+  PathResult run() {
+    system_.evaluate(at_, true);
+    start_ = way_value();
+    length_ = options_.first_step * std::abs(until() - start_);
+    look();
+    while (result_.end == PathEnd::stuck && result_.reason.empty()) {
+      if (result_.steps >= options_.max_steps) {
+        result_.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options_.max_steps, at_.load_factor);
+      } else if (way_) {
+        walk();
+      } else {
+        step_by_load();
+      }
+    }
+    system_.evaluate(at_, true);
+    result_.load_factor = at_.load_factor;
+    return std::move(result_);
+  }
+
+private:
+  bool is_arc() const { return std::holds_alternative<ArcLengthPath>(control_); }
+
+  // Where the way of displacement or volume control ends.
+  double until() const {
+    if (const auto* p = std::get_if<DisplacementPath>(&control_)) return p->until;
+    if (const auto* p = std::get_if<LargestDisplacementPath>(&control_)) return p->until;
+    if (const auto* p = std::get_if<VolumePath>(&control_)) return p->until;
+    return 0;
+  }
+
+  Held held_quantity() const {
+    if (const auto* p = std::get_if<DisplacementPath>(&control_)) return p->point;
+    if (const auto* p = std::get_if<LargestDisplacementPath>(&control_)) {
+      const Change* ahead = way_ ? &*way_ : nullptr;
+      const Farthest now = farthest(system_, p->block, at_);
+      const Farthest found = now.move.norm() > 0 ? now : farthest(system_, p->block, at_, ahead);
+      return displacement_of(found.node, found.move.norm() > 0 ? found.move.normalized() : Vec3(0, 0, 1));
+    }
+    if (const auto* p = std::get_if<VolumePath>(&control_)) return HeldVolume{p->chamber};
+    return HeldArc{at_.positions};
+  }
+
+  double way_value() const { return is_arc() ? 0.0 : value_of(held_quantity(), system_, at_); }
+
+  // The tangent at the accepted state: where the path goes on, and how many negative eigenvalues there are.
+  void look() {
+    way_.reset();
+    count_ahead_.reset();
+    Tangent& tangent = newton_.tangent();
+    if (!tangent.factorize(at_, Tangent::Repair::indefinite) || tangent.artificial_tension() > 0) return;
+    std::optional<Change> way = tangent.along(at_);
+    if (!way) return;
+    count_ahead_ = tangent.count(at_, nullptr).load_held;
+    way_ = oriented(std::move(*way));
+  }
+
+  // Along the last step; at first towards more load (arc length) or towards the goal.
+  Change oriented(Change way) {
+    double sign = way.load_factor;
+    if (last_) {
+      sign = dot_u(way, *last_);
+    } else if (!is_arc()) {
+      way_ = way; // tells the largest displacement's node
+      sign = dot(row_of(held_quantity(), 0, system_, at_).form, way) * (until() - start_);
+    }
+    return sign < 0 ? -1.0 * way : way;
+  }
+
+  Change difference(const Configuration& from, const Configuration& to) const {
+    Change change;
+    for (const assembly::FoilEquations& foil : system_.foils()) {
+      VecX u(foil.pattern.size);
+      for (std::size_t i = 0; i < foil.coordinate.size(); ++i) {
+        const Index k = foil.coordinate[i];
+        const auto node = static_cast<std::size_t>(k / 3);
+        u[static_cast<Eigen::Index>(i)] = to.positions[node][k % 3] - from.positions[node][k % 3];
+      }
+      change.u.push_back(std::move(u));
+    }
+    change.p = to.pressures - from.pressures;
+    change.load_factor = to.load_factor - from.load_factor;
+    return change;
+  }
+
+  // One step of the control, cut until it is found.
+  void walk() {
+    std::optional<double> shortest;
+    for (;;) {
+      const std::optional<Goal> goal = next_goal();
+      if (!goal) return;
+      if (!shortest) shortest = options_.smallest_step * first_length();
+      Configuration next = moved(system_, at_, predicted(*goal));
+      const Newton::Outcome outcome = solve(next, *goal);
+      std::string reason = outcome.reason;
+      if (outcome.converged) {
+        if (dot_u(difference(at_, next), *way_) <= 0) {
+          reason = "the path was lost";
+        } else if (turned_over(system_, at_, next)) {
+          reason = "an element would be turned over";
+        } else if (take(*goal, next, outcome.iterations)) {
+          return;
+        } else {
+          reason = "the path bends too much";
+        }
+      }
+      system_.evaluate(at_, true);
+      length_ = std::abs(goal->to - goal->from) / cut;
+      if (length_ < *shortest) {
+        result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor, reason);
+        return;
+      }
+    }
+  }
+
+  double first_length() {
+    if (is_arc()) return first_arc_;
+    return options_.first_step * std::abs(until() - start_);
+  }
+
+  std::optional<Goal> next_goal() {
+    if (is_arc()) {
+      if (first_arc_ == 0) {
+        const double rate = std::max(std::abs(way_->load_factor), 1e-300);
+        first_arc_ = options_.first_step / rate * root_mean_square(system_, *way_);
+        if (length_ == 0) length_ = first_arc_;
+      }
+      return Goal{HeldArc{at_.positions}, 0, length_, true};
+    }
+    Goal goal{held_quantity(), way_value(), 0, false};
+    const Row row = row_of(goal.held, goal.from, system_, at_);
+    const double forward = until() >= start_ ? 1 : -1;
+    if (dot(row.form, *way_) * forward <= 0) {
+      result_.reason =
+          fmt::format("the controlled quantity turns back at {:.6g}, load factor {:.6g}: arc_length goes on", goal.from,
+                      at_.load_factor);
+      return std::nullopt;
+    }
+    // to the end of a part at most, without a sliver before it
+    const double end = part_ >= options_.parts ? until() : start_ + (until() - start_) * part_ / options_.parts;
+    const double left = std::abs(end - goal.from);
+    const bool to_end = length_ > 0.999 * left;
+    goal.to = to_end ? end : goal.from + forward * (length_ > 0.6 * left ? 0.5 * left : length_);
+    goal.end_of_part = to_end;
+    return goal;
+  }
+
+  Change predicted(const Goal& goal) const {
+    if (is_arc()) return (goal.to / root_mean_square(system_, *way_)) * *way_;
+    const Row row = row_of(goal.held, goal.to, system_, at_);
+    return (-row.residual / dot(row.form, *way_)) * *way_;
+  }
+
+  Newton::Outcome solve(Configuration& next, const Goal& goal) {
+    return newton_.solve(next, goal.held, goal.to, options_.max_iterations, [&](const Iteration& i) {
+      if (report_) report_(result_.steps + 1, i);
+    });
+  }
+
+  // Without a tangent (flat, slack) a step of load control, short enough not to pass the first goal.
+  void step_by_load() {
+    double step = options_.first_step * (last_ && last_->load_factor < 0 ? -1 : 1);
+    for (int tries = 0; tries < 16; ++tries, step /= cut) {
+      Configuration next = at_;
+      next.load_factor += step;
+      const Newton::Outcome outcome = newton_.solve(next, [&](const Iteration& i) {
+        if (report_) report_(result_.steps + 1, i);
+      });
+      if (!outcome.converged) continue;
+      if (!is_arc()) {
+        const double now = value_of(held_quantity_at(next), system_, next);
+        const bool forward = (now - start_) * (until() - start_) > 0;
+        if (!forward || std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
+          continue;
+      }
+      last_ = difference(at_, next);
+      at_ = std::move(next);
+      look();
+      if (is_arc()) length_ = first_arc_ = root_mean_square(system_, *last_);
+      accept(outcome.iterations, is_arc());
+      return;
+    }
+    system_.evaluate(at_, true);
+    result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: the cushion has no stiffness, and no "
+                                 "small part of the load gives it one",
+                                 at_.load_factor);
+  }
+
+  Held held_quantity_at(const Configuration& next) const {
+    if (const auto* p = std::get_if<LargestDisplacementPath>(&control_)) {
+      const Farthest found = farthest(system_, p->block, next);
+      return displacement_of(found.node, found.move.norm() > 0 ? found.move.normalized() : Vec3(0, 0, 1));
+    }
+    return held_quantity();
+  }
+
+  // Whether the cubic through load and rate at both ends of a step turns twice between them: too long a step, which
+  // would pass two limit points unseen.
+  static bool turns_twice(double change, double length, double rate, double rate_next) {
+    if (rate * rate_next <= 0) return false;
+    constexpr int samples = 16;
+    for (int i = 1; i < samples; ++i) {
+      const double t = static_cast<double>(i) / samples;
+      const double slope =
+          rate * (1 - 4 * t + 3 * t * t) + rate_next * (3 * t * t - 2 * t) + 6 * change / length * t * (1 - t);
+      if (slope * rate < 0) return true;
+    }
+    return false;
+  }
+
+  // A step was found: first what lies between, then the step itself. False: it is too long.
+  bool take(const Goal& goal, const Configuration& next, int iterations) {
+    const Configuration from = at_;
+    const double rate = rate_.value_or(way_->load_factor);
+    const std::optional<int> count = count_;
+    const std::optional<Change> way_before = way_, last_before = last_;
+    last_ = difference(from, next);
+    at_ = next;
+    look();
+    const double length = std::sqrt(dot_u(*last_, *last_));
+    const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
+    if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
+        (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
+      at_ = from;
+      way_ = way_before;
+      last_ = last_before;
+      return false;
+    }
+    if (way_ && rate * way_->load_factor < 0) {
+      const double beyond = way_->load_factor;
+      const std::optional<int> count_beyond = count_ahead_;
+      if (locate_limit(goal, from, next, rate, beyond)) {
+        rate_ = beyond;
+        if (count && count_beyond) count_ = *count + (*count_beyond > *count ? 1 : -1);
+        const CriticalPoint limit{CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1};
+        if (is_arc() && ends_between(from)) return true; // before it
+        result_.critical.push_back(limit);
+        accept(0, false);
+        return true;
+      }
+      at_ = next;
+      system_.evaluate(at_, true);
+      look();
+    } else if (way_ && count && count_ahead_ && *count != *count_ahead_ && !options_.only_looking) {
+      const int beyond = *count_ahead_;
+      locate_bifurcation(goal, from, next, *count, beyond);
+      at_ = next;
+      system_.evaluate(at_, true);
+      look();
+    }
+    rate_ = way_ ? std::optional<double>(way_->load_factor) : std::nullopt;
+    count_ = count_ahead_;
+    if (is_arc() && ends_between(from)) return true;
+    grow(goal, iterations);
+    accept(iterations, goal.end_of_part);
+    if (result_.end == PathEnd::stopped) return true;
+    if (!is_arc() && goal.end_of_part && ++part_ > options_.parts) result_.end = PathEnd::reached;
+    return true;
+  }
+
+  void grow(const Goal& goal, int iterations) {
+    const double factor = std::clamp(std::sqrt(wanted_iterations / std::max(iterations, 1)), 0.5, 2.0);
+    const double planned = is_arc() ? goal.to : std::max(std::abs(goal.to - goal.from), length_);
+    length_ = factor * planned;
+  }
+
+  void accept(int iterations, bool end_of_part) {
+    if (!options_.only_looking) system_.accept_history();
+    ++result_.steps;
+    result_.held = held_quantity();
+    const Step step{result_.steps, at_.load_factor, iterations, end_of_part};
+    if (accepted_ && accepted_(step, at_) == Verdict::stop) result_.end = PathEnd::stopped;
+  }
+
+  // The state a part of the way from `from` to `next`.
+  std::optional<Configuration> state_between(const Goal& goal, const Configuration& from, const Configuration& next,
+                                             double part) {
+    Goal inner = goal;
+    inner.to = goal.from + part * (goal.to - goal.from);
+    Configuration c = between(from, next, part);
+    if (!solve(c, inner).converged) return std::nullopt;
+    return c;
+  }
+
+  // The state where the load has its extreme: a root of its rate along the path (regula falsi, Illinois rule).
+  bool locate_limit(const Goal& goal, const Configuration& from, const Configuration& next, double rate_from,
+                    double rate_next) {
+    double low = 0, f_low = rate_from, high = 1, f_high = rate_next;
+    double extreme = from.load_factor;
+    for (int i = 0; i < 30; ++i) {
+      const double part = low + (high - low) * std::clamp(f_low / (f_low - f_high), 0.02, 0.98);
+      std::optional<Configuration> c = state_between(goal, from, next, part);
+      if (!c) return false;
+      at_ = std::move(*c);
+      last_ = difference(from, at_);
+      look();
+      if (!way_) return false;
+      const double rate = way_->load_factor;
+      const double change = std::abs(at_.load_factor - extreme);
+      extreme = at_.load_factor;
+      // the load's error is of second order in the place's
+      if (rate == 0 || (i > 1 && change <= 1e-10 * std::abs(extreme))) break;
+      if (rate * f_low > 0) {
+        low = part;
+        f_low = rate;
+        f_high /= 2;
+      } else {
+        high = part;
+        f_high = rate;
+        f_low /= 2;
+      }
+    }
+    return true;
+  }
+
+  void locate_bifurcation(const Goal& goal, const Configuration& from, const Configuration& next, int count,
+                          int beyond) {
+    if (static_cast<int>(result_.critical.size()) >= most_bifurcations || std::abs(beyond - count) > 3) return;
+    double low = 0, high = 1;
+    Configuration at = next;
+    for (int i = 0; i < 14; ++i) { // to 1e-4 of the step
+      const double part = 0.5 * (low + high);
+      std::optional<Configuration> c = state_between(goal, from, next, part);
+      if (!c) return;
+      at_ = std::move(*c);
+      last_ = difference(from, at_);
+      look();
+      if (!count_ahead_) break; // singular here: this is the place
+      (*count_ahead_ == count ? low : high) = part;
+      at = at_;
+    }
+    last_ = difference(from, next);
+    result_.critical.push_back({CriticalPoint::Kind::bifurcation, at.load_factor, at.pressures, result_.steps + 1});
+  }
+
+  // Arc length: whether a goal lies between `from` and the new state; then the path ends exactly there.
+  bool ends_between(const Configuration& from) {
+    const ArcLengthPath& arc = std::get<ArcLengthPath>(control_);
+    const auto try_end = [&](const std::optional<double>& goal, const Held& held) {
+      if (!goal) return false;
+      const Configuration now = at_;
+      Configuration before = from;
+      const bool needs_volume = std::holds_alternative<HeldVolume>(held);
+      if (needs_volume) system_.evaluate(before, true);
+      const double a = value_of(held, system_, before);
+      if (needs_volume) system_.evaluate(at_, true);
+      const double b = value_of(held, system_, at_);
+      if ((a - *goal) * (b - *goal) > 0 || a == b || a == *goal) return false;
+      Configuration c = between(from, now, (*goal - a) / (b - a));
+      const Newton::Outcome outcome = newton_.solve(c, held, *goal, options_.max_iterations, {});
+      if (outcome.converged) {
+        at_ = std::move(c);
+      } else {
+        system_.evaluate(at_, true); // it was passed: good enough as an end
+      }
+      accept(outcome.iterations, true);
+      if (result_.end != PathEnd::stopped) result_.end = PathEnd::reached;
+      return true;
+    };
+    std::optional<double> fallen;
+    if (arc.after_peak) {
+      for (const CriticalPoint& point : result_.critical) {
+        if (point.kind == CriticalPoint::Kind::limit && (!fallen || std::abs(point.load_factor) > std::abs(*fallen))) {
+          fallen = point.load_factor;
+        }
+      }
+      if (fallen) *fallen *= *arc.after_peak;
+    }
+    const Farthest far = farthest(system_, arc.block, at_);
+    const Vec3 direction = far.move.norm() > 0 ? far.move.normalized() : Vec3(0, 0, 1);
+    return try_end(arc.load_factor, HeldLoadFactor{}) || try_end(fallen, HeldLoadFactor{}) ||
+           try_end(arc.pressure, HeldPressure{arc.chamber}) || try_end(arc.volume, HeldVolume{arc.chamber}) ||
+           try_end(arc.displacement, displacement_of(far.node, direction));
+  }
+
+  System& system_;
+  Newton& newton_;
+  Configuration& at_; // the last accepted state, while a step is looked into also one that is not
+  const PathControl& control_;
+  const ControlledPathOptions& options_;
+  const Accept& accepted_;
+  const Report& report_;
+  PathResult result_;
+  double start_ = 0, length_ = 0, first_arc_ = 0;
+  int part_ = 1;
+  std::optional<Change> way_;              // unit tangent of the path, along it
+  std::optional<Change> last_;             // the last step
+  std::optional<double> rate_;             // of the load along the path behind the last accepted state
+  std::optional<int> count_, count_ahead_; // negative eigenvalues, load held
+};
+
+} // namespace
+
+PathResult follow_control(System& system, Newton& newton, Configuration& configuration, const PathControl& control,
+                          const ControlledPathOptions& options, const Accept& accepted, const Report& report) {
+  return Walk(system, newton, configuration, control, options, accepted, report).run();
+}
+
+} // namespace pneuma::solver::path

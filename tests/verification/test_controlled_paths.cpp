@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Paths through limit points by displacement, volume and arc length, against a closed form.
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+
+#include "solver/path/controlled_path.h"
+#include "tests/unit/solver/cushions.h"
+
+namespace {
+
+using namespace pneuma;
+using namespace pneuma::solver;
+using base::Index;
+using base::MatX;
+using base::Vec3;
+using base::VecX;
+using geometry::ElementType;
+using tests::Cushion;
+using tests::model_of;
+
+// A pyramid of linear triangles over a square of 2 a, free of stress at height z0, one free node: the surface's
+// counterpart of von Mises' truss. Strain across the base only, E22 = (z^2 - z0^2) / (2 (a^2 + z0^2)), and a pressure p
+// pushes the apex with p 4 a^2 / 3. So
+//   p(z) 4 a^2 / 3 = A0 h c z (z^2 - z0^2) / (2 (a^2 + z0^2)^2),  c = E / (1 - nu^2),  A0 = 4 a sqrt(a^2 + z0^2),
+// with extremes at z = +- z0 / sqrt(3).
+struct Pyramid {
+  double a = 1, z0 = 0.1, h = 250e-6, E = 900e6, nu = 0.45;
+
+  double pressure(double z) const {
+    const double side = a * a + z0 * z0;
+    return 4 * a * std::sqrt(side) * h * E / (1 - nu * nu) * z * (z * z - z0 * z0) / (2 * side * side) /
+           (4 * a * a / 3);
+  }
+  double limit() const { return pressure(-z0 / std::numbers::sqrt3); }
+
+  // load factor 1: the pressure `top` pushes down
+  assembly::Model model(double top) const {
+    Cushion c;
+    c.plan = geometry::Rectangle{2 * a, 2 * a};
+    c.element = ElementType::T3;
+    c.divisions = {2, 2};
+    c.heights = {z0};
+    c.base = true;
+    c.thickness = {h};
+    c.law = {E, nu};
+    assembly::Model model = model_of(c, 0);
+    model.face_pressure = {{0, -top}, {0, 0}};
+    return model;
+  }
+};
+
+struct Point {
+  double load_factor, height, volume;
+};
+
+// A path and what was seen on it.
+struct Followed {
+  assembly::System system;
+  path::Newton newton;
+  assembly::Configuration at;
+  path::PathResult path;
+  std::vector<Point> points;
+  Index apex = -1;
+
+  Followed(assembly::Model model, const path::PathControl& control, path::ControlledPathOptions options = {})
+      : system(std::move(model), 1), newton(system, {}), at(tests::start_of(system.model())) {
+    for (std::size_t i = 0; i < at.positions.size(); ++i) {
+      if (system.model().fixed[3 * i] == 0 && std::abs(at.positions[i].x()) + std::abs(at.positions[i].y()) < 1e-9) {
+        apex = static_cast<Index>(i);
+      }
+    }
+    path = path::follow_control(
+        system, newton, at, control, options,
+        [&](const path::Step& step, const assembly::Configuration& c) {
+          points.push_back(
+              {step.load_factor, c.positions[static_cast<std::size_t>(apex)].z(), system.chamber_volume(0)});
+          return path::Verdict::go_on;
+        },
+        tests::tell);
+  }
+  bool reached() const { return path.end == path::PathEnd::reached; }
+};
+
+path::DisplacementPath down(const Followed& like, double until) {
+  return {path::displacement_of(like.apex, Vec3(0, 0, -1)), until};
+}
+
+void expect_on_the_closed_form(const Pyramid& pyramid, double top, const Followed& f) {
+  for (const Point& p : f.points) {
+    EXPECT_NEAR(-p.load_factor * top, pyramid.pressure(p.height), 1e-7 * pyramid.limit()) << p.height;
+  }
+}
+
+void expect_both_limits(const Pyramid& pyramid, double top, const Followed& f) {
+  std::vector<double> limits;
+  for (const path::CriticalPoint& point : f.path.critical) {
+    if (point.kind == path::CriticalPoint::Kind::limit) limits.push_back(point.load_factor * top);
+  }
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_NEAR(limits[0], pyramid.limit(), 1e-9 * pyramid.limit());
+  EXPECT_NEAR(limits[1], -pyramid.limit(), 1e-9 * pyramid.limit());
+}
+
+TEST(ControlledPath, DisplacementControlTakesThePyramidThroughBothLimitPoints) {
+  const Pyramid pyramid;
+  const double top = pyramid.limit();
+  const Followed probe(pyramid.model(top), path::VolumePath{0, 0.13});
+  for (const int parts : {1, 7, 40}) {
+    path::ControlledPathOptions options;
+    options.parts = parts;
+    const Followed f(pyramid.model(top), down(probe, 0.23), options);
+    ASSERT_TRUE(f.reached()) << f.path.reason;
+    expect_on_the_closed_form(pyramid, top, f);
+    expect_both_limits(pyramid, top, f);
+    EXPECT_NEAR(f.points.back().height, 0.1 - 0.23, 1e-12);
+    std::printf("displacement, %d parts: %d steps, %d iterations, %d factorisations\n", parts, f.path.steps,
+                f.newton.work().iterations, f.newton.work().factorizations);
+  }
+}
+
+TEST(ControlledPath, VolumeControlDoesSo) {
+  const Pyramid pyramid;
+  const double top = pyramid.limit();
+  const Followed f(pyramid.model(top), path::VolumePath{0, -0.13 * 4 / 3});
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  expect_on_the_closed_form(pyramid, top, f);
+  expect_both_limits(pyramid, top, f);
+  EXPECT_NEAR(f.points.back().height, -0.13, 1e-12);
+}
+
+TEST(ControlledPath, ArcLengthDoesSoAndEndsWhereItIsTold) {
+  const Pyramid pyramid;
+  const double top = pyramid.limit();
+  path::ArcLengthPath until;
+  until.load_factor = 1.3; // only the third branch has it
+  const Followed f(pyramid.model(top), until);
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  expect_on_the_closed_form(pyramid, top, f);
+  expect_both_limits(pyramid, top, f);
+  EXPECT_NEAR(f.points.back().load_factor, 1.3, 1e-9);
+  EXPECT_LT(f.points.back().height, -0.1);
+  std::printf("arc length: %d steps, %d iterations, %d factorisations\n", f.path.steps, f.newton.work().iterations,
+              f.newton.work().factorizations);
+
+  path::ArcLengthPath fallen;
+  fallen.after_peak = 0.5;
+  const Followed g(pyramid.model(top), fallen);
+  ASSERT_TRUE(g.reached()) << g.path.reason;
+  EXPECT_NEAR(g.points.back().load_factor, 0.5, 1e-9);
+  EXPECT_LT(g.points.back().height, 0.1 / std::numbers::sqrt3); // behind the peak
+
+  path::ArcLengthPath far;
+  far.displacement = 0.15;
+  const Followed h(pyramid.model(top), far);
+  ASSERT_TRUE(h.reached()) << h.path.reason;
+  EXPECT_NEAR(h.points.back().height, -0.05, 1e-10);
+
+  path::ArcLengthPath empty;
+  empty.volume = -0.05;
+  const Followed v(pyramid.model(top), empty);
+  ASSERT_TRUE(v.reached()) << v.path.reason;
+  EXPECT_NEAR(v.points.back().volume, -0.05, 1e-9);
+}
+
+TEST(ControlledPath, CountsSeeTheLimitPointsAndTheControlHoldsWhatTheLoadDoesNot) {
+  const Pyramid pyramid;
+  const double top = pyramid.limit();
+  const Followed probe(pyramid.model(top), path::VolumePath{0, 0.13});
+  // 0.07 m down: between the limit points
+  Followed f(pyramid.model(top), down(probe, 0.07));
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  ASSERT_TRUE(f.path.held);
+  const path::Row row = path::row_of(*f.path.held, 0, f.system, f.at);
+  const path::Stability count = f.newton.tangent().stability(f.at, &row);
+  const MatX dense = tests::dense_tangent(f.system, 0);
+  const VecX eigenvalues = Eigen::SelfAdjointEigenSolver<MatX>(dense).eigenvalues();
+  const auto negative = static_cast<int>((eigenvalues.array() < 0).count());
+  EXPECT_GE(negative, 1);
+  EXPECT_EQ(count.load_held, negative);
+  EXPECT_EQ(count.control_held, negative - 1);
+}
+
+TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
+  const Pyramid pyramid;
+  const double top = 1.2 * pyramid.limit();
+  assembly::System system(pyramid.model(top), 1);
+  path::Newton newton(system, {});
+  assembly::Configuration at = tests::start_of(system.model());
+  path::LoadPathOptions options;
+  options.parts = 10;
+  const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
+  ASSERT_EQ(result.end, path::PathEnd::reached) << result.reason;
+  double lowest = 0;
+  for (const Vec3& x : at.positions) lowest = std::min(lowest, x.z());
+  EXPECT_LT(lowest, -0.1);
+  EXPECT_NEAR(-top, pyramid.pressure(lowest), 1e-7 * top);
+  EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, 0);
+}
+
+// --- a spherical balloon, one octant by symmetry
+// ----------------------------------------------------------------------------
+
+constexpr double radius = 0.1, film = 1e-3, shear = 0.4e6; // m, m, Pa
+
+// A triangle of the plan onto the octant; the planes of symmetry hold their normal direction. Load factor 1: 1 kPa.
+assembly::Model balloon(ElementType element, int divisions, const material::Law& law) {
+  const double high = std::sqrt(0.75);
+  const geometry::Triangle plan{{{0, 0}, {1, 0}, {0.5, high}}};
+  assembly::Model model;
+  model.mesh = geometry::meshing::stack(
+      geometry::meshing::mesh_plan(plan, {element, {}, std::array{divisions, divisions}}), {{"octant"}});
+  for (Vec3& x : model.mesh.nodes) {
+    const double w = x.y() / high;
+    const double v = x.x() - 0.5 * w;
+    x = radius * Vec3(1 - v - w, v, w).normalized();
+    for (int c = 0; c < 3; ++c) model.fixed.push_back(std::abs(x[c]) < 1e-9 * radius ? 1 : 0);
+  }
+  model.mesh.blocks.push_back({"nothing", geometry::BlockKind::base, {}}); // the planes are the other walls
+  model.foils.push_back(assembly::Foil{
+      element::make_reference(element, geometry::StressRule::full,
+                              element::corner_coordinates(model.mesh.blocks[0].connectivity, model.mesh.nodes),
+                              Vec3(0.3, 0.5, 0.1)),
+      law, film});
+  model.foils.emplace_back();
+  model.chambers.push_back({"inside", 0, 1, 0.0, chamber::Regulated{0, 1000}, 0.0});
+  model.origin = Vec3::Zero();
+  return model;
+}
+
+// p = 4 h / R (C1 + C2 s^2) (1/s - 1/s^7) of a Mooney-Rivlin sphere at stretch s (Holzapfel 2000, eq. 6.141)
+double pressure_of(const material::MooneyRivlin& law, double s) {
+  return 4 * film / radius * (law.c1 + law.c2 * s * s) * (1 / s - std::pow(s, -7));
+}
+// its extreme near a stretch
+double extreme_of(const material::MooneyRivlin& law, double from, double to, double sign) {
+  double best = -1e300;
+  for (int i = 0; i <= 200000; ++i) best = std::max(best, sign * pressure_of(law, from + (to - from) * i / 200000));
+  return sign * best;
+}
+double stretch_of(double octant) {
+  return std::cbrt(octant * 6 / std::numbers::pi) / radius;
+}
+
+struct Blown {
+  assembly::System system;
+  path::Newton newton;
+  assembly::Configuration at;
+  path::PathResult path;
+  std::vector<std::pair<double, double>> points; // stretch, pressure
+
+  Blown(assembly::Model model, const path::PathControl& control, path::ControlledPathOptions options = {})
+      : system(std::move(model), 1), newton(system, {}), at(tests::start_of(system.model())) {
+    path = path::follow_control(
+        system, newton, at, control, options,
+        [&](const path::Step&, const assembly::Configuration& c) {
+          points.emplace_back(stretch_of(system.chamber_volume(0)), c.pressures[0]);
+          return path::Verdict::go_on;
+        },
+        tests::tell);
+  }
+};
+
+std::vector<double> limits_of(const path::PathResult& path) {
+  std::vector<double> limits;
+  for (const path::CriticalPoint& point : path.critical) {
+    if (point.kind == path::CriticalPoint::Kind::limit) limits.push_back(point.pressures[0]);
+  }
+  return limits;
+}
+
+TEST(Balloon, NeoHookeanSpherePassesItsLimitPointByEveryControl) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = pressure_of(law, std::pow(7.0, 1.0 / 6)); // Holzapfel 2000: 7^(1/6)
+  double last_error = 1;
+  for (const int divisions : {4, 8}) {
+    path::ArcLengthPath arc;
+    arc.displacement = 2 * radius;
+    const Blown a(balloon(ElementType::T6, divisions, law), arc);
+    const Blown v(balloon(ElementType::T6, divisions, law), path::VolumePath{0, 27 * std::numbers::pi / 6 * 1e-3});
+    const Blown d(balloon(ElementType::T6, divisions, law), path::LargestDisplacementPath{0, 2 * radius});
+    for (const Blown* b : {&a, &v, &d}) {
+      ASSERT_EQ(b->path.end, path::PathEnd::reached) << b->path.reason;
+      const std::vector<double> limits = limits_of(b->path);
+      ASSERT_EQ(limits.size(), 1u);
+      EXPECT_NEAR(limits[0], limits_of(a.path)[0], 1e-8 * exact); // the mesh's limit point, whatever the control
+      double worst = 0;
+      for (const auto& [s, p] : b->points) worst = std::max(worst, std::abs(p - pressure_of(law, s)) / exact);
+      EXPECT_LT(worst, 0.02 / divisions);
+      std::printf("T6 %d: limit %.6f Pa (exact %.6f), worst %.1e of it on the way, %d steps, %d iterations, %d "
+                  "factorisations, %zu critical points\n",
+                  divisions, limits[0], exact, worst, b->path.steps, b->newton.work().iterations,
+                  b->newton.work().factorizations, b->path.critical.size());
+    }
+    const double error = std::abs(limits_of(a.path)[0] / exact - 1);
+    EXPECT_LT(error, last_error / 8); // third order or better
+    last_error = error;
+  }
+  EXPECT_LT(last_error, 1e-4);
+}
+
+TEST(Balloon, MooneyRivlinSphereFallsAndRisesAgain) {
+  const material::MooneyRivlin law{0.45 * shear, 0.05 * shear};
+  const double most = extreme_of(law, 1.01, 2, 1), least = extreme_of(law, 1.5, 5, -1);
+  path::ArcLengthPath arc;
+  arc.pressure = 1.2 * most; // on the rising branch far out
+  const Blown b(balloon(ElementType::T6, 8, law), arc);
+  ASSERT_EQ(b.path.end, path::PathEnd::reached) << b.path.reason;
+  const std::vector<double> limits = limits_of(b.path);
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_NEAR(limits[0], most, 1e-4 * most);
+  EXPECT_NEAR(limits[1], least, 1e-4 * most);
+  EXPECT_NEAR(b.points.back().second, 1.2 * most, 1e-9 * most);
+  std::printf("Mooney-Rivlin: %.6f, %.6f Pa (exact %.6f, %.6f), last stretch %.3f\n", limits[0], limits[1], most, least,
+              b.points.back().first);
+}
+
+TEST(Balloon, PressureControlStopsAtTheLimitPointAndNamesIt) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = pressure_of(law, std::pow(7.0, 1.0 / 6));
+  assembly::Model model = balloon(ElementType::T6, 8, law);
+  model.chambers[0].gas = chamber::Regulated{0, 2 * exact};
+  for (const int parts : {1, 20}) {
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    path::LoadPathOptions options;
+    options.parts = parts;
+    const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
+    std::printf("%s (%d iterations, %d factorisations)\n", result.reason.c_str(), newton.work().iterations,
+                newton.work().factorizations);
+    ASSERT_EQ(result.end, path::PathEnd::stuck);
+    ASSERT_EQ(result.critical.size(), 1u);
+    EXPECT_NEAR(result.critical[0].pressures[0], exact, 1e-4 * exact);
+    EXPECT_NE(result.reason.find("limit point at load factor 0.5"), std::string::npos) << result.reason;
+    EXPECT_NEAR(result.load_factor, 0.5, 1e-3);
+    EXPECT_LE(result.load_factor, 0.5 + 1e-4);
+  }
+}
+
+} // namespace
