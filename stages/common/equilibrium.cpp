@@ -178,7 +178,8 @@ private:
     state.fields.clear();
     for (std::size_t i = 0; i < state.chambers.size(); ++i) {
       pipeline::state::Chamber& chamber = state.chambers[i];
-      const assembly::Chamber& model = system_.model().chambers[i];
+      const Index air = system_.air_of(static_cast<Index>(i));
+      const assembly::Chamber& model = system_.model().chambers[static_cast<std::size_t>(air)];
       chamber.law = law_kind(model.gas);
       if (const auto* closed = std::get_if<solver::chamber::Closed>(&model.gas)) {
         chamber.kappa = closed->kappa;
@@ -331,12 +332,9 @@ assembly::Model make_model(const Start& start, const State& state, double weight
   model.dead_from = weight_from * all;
   model.dead_to = weight_to * all;
   for (const pipeline::state::Chamber& chamber : state.chambers) {
-    if (chamber.connected_to >= 0) {
-      throw base::InputError(fmt::format("chamber `{}`: `connected_to` is not wired", chamber.name));
-    }
     model.chambers.push_back({chamber.name, chamber.outer, chamber.inner, chamber.dead_volume,
                               solver::chamber::Regulated{chamber.gauge_pressure, chamber.gauge_pressure},
-                              chamber.ambient_pressure});
+                              chamber.ambient_pressure, chamber.connected_to});
   }
   model.face_pressure.assign(state.mesh.blocks.size(), assembly::Ramp{});
   return model;

@@ -77,12 +77,14 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
   }
 }
 
-solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, std::string& text) {
+// `volume`: of the chamber's air, with that of the chambers connected to it.
+solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, double volume,
+                            std::string& text) {
   if (const auto* closed = std::get_if<workflow::ClosedGas>(&gas)) {
     solver::chamber::Closed law;
     law.kappa = closed->kappa;
     law.absolute0 = chamber.gauge_pressure + chamber.ambient_pressure;
-    law.volume0 = chamber.volume;
+    law.volume0 = volume;
     law.temperature0 = chamber.temperature;
     law.temperature = closed->temperature.value_or(chamber.temperature);
     law.ambient_from = chamber.ambient_pressure;
@@ -96,9 +98,9 @@ solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Cha
     }
     return law;
   }
-  if (const auto* volume = std::get_if<workflow::VolumeGas>(&gas)) {
+  if (const auto* prescribed = std::get_if<workflow::VolumeGas>(&gas)) {
     text = fmt::format("chamber {}: prescribed volume", chamber.name);
-    return solver::chamber::PrescribedVolume{chamber.volume, volume->volume};
+    return solver::chamber::PrescribedVolume{volume, prescribed->volume};
   }
   text = fmt::format("chamber {}: regulated air", chamber.name);
   const auto& regulated = std::get<workflow::RegulatedGas>(gas);
@@ -118,8 +120,18 @@ int run(int argc, char** argv) {
   drive.steps = settings.control.steps;
   drive.model = common::make_model(start, drive.state, 1, 1);
   for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
+    const pipeline::state::Chamber& chamber = drive.state.chambers[c];
+    if (chamber.connected_to >= 0) {
+      const auto& other = drive.state.chambers[static_cast<std::size_t>(chamber.connected_to)];
+      drive.modelled.push_back(fmt::format("chamber {}: shares the air of {}", chamber.name, other.name));
+      continue;
+    }
+    double volume = chamber.volume;
+    for (const pipeline::state::Chamber& other : drive.state.chambers) {
+      if (other.connected_to == static_cast<Index>(c)) volume += other.volume;
+    }
     std::string text;
-    drive.model.chambers[c].gas = gas_of(settings.gas.at(drive.state.chambers[c].name), drive.state.chambers[c], text);
+    drive.model.chambers[c].gas = gas_of(settings.gas.at(chamber.name), chamber, volume, text);
     drive.modelled.push_back(text);
   }
   for (const workflow::Load& load : settings.loads) {
