@@ -12,7 +12,6 @@ namespace {
 
 constexpr double cut = 4;               // a failed step is made so much shorter
 constexpr double wanted_iterations = 4; // of a step
-constexpr double longest_arc = 4;       // of the first one
 constexpr int most_bifurcations = 10;   // that are located on a path
 
 Configuration between(const Configuration& a, const Configuration& b, double part) {
@@ -136,9 +135,10 @@ private:
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
-        } else {
-          take(*goal, std::move(next), outcome.iterations);
+        } else if (take(*goal, next, outcome.iterations)) {
           return;
+        } else {
+          reason = "the path bends too much";
         }
       }
       system_.evaluate(at_, true);
@@ -162,7 +162,7 @@ private:
         first_arc_ = options_.first_step / rate * root_mean_square(system_, *way_);
         if (length_ == 0) length_ = first_arc_;
       }
-      return Goal{HeldArc{at_.positions}, 0, std::min(length_, longest_arc * first_arc_), true};
+      return Goal{HeldArc{at_.positions}, 0, length_, true};
     }
     Goal goal{held_quantity(), way_value(), 0, false};
     const Row row = row_of(goal.held, goal.from, system_, at_);
@@ -231,21 +231,49 @@ private:
     return held_quantity();
   }
 
-  // A step was found: first what lies between, then the step itself.
-  void take(const Goal& goal, Configuration next, int iterations) {
+  // Whether the cubic through load and rate at both ends of a step turns twice between them: too long a step, which
+  // would pass two limit points unseen.
+  static bool turns_twice(double change, double length, double rate, double rate_next) {
+    if (rate * rate_next <= 0) return false;
+    constexpr int samples = 16;
+    for (int i = 1; i < samples; ++i) {
+      const double t = static_cast<double>(i) / samples;
+      const double slope =
+          rate * (1 - 4 * t + 3 * t * t) + rate_next * (3 * t * t - 2 * t) + 6 * change / length * t * (1 - t);
+      if (slope * rate < 0) return true;
+    }
+    return false;
+  }
+
+  // A step was found: first what lies between, then the step itself. False: it is too long.
+  bool take(const Goal& goal, const Configuration& next, int iterations) {
     const Configuration from = at_;
     const double rate = rate_.value_or(way_->load_factor);
     const std::optional<int> count = count_;
+    const std::optional<Change> way_before = way_, last_before = last_;
     last_ = difference(from, next);
     at_ = next;
     look();
+    const double length = std::sqrt(dot_u(*last_, *last_));
+    const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
+    if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
+        (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
+      at_ = from;
+      way_ = way_before;
+      last_ = last_before;
+      return false;
+    }
     if (way_ && rate * way_->load_factor < 0) {
       const double beyond = way_->load_factor;
       const std::optional<int> count_beyond = count_ahead_;
       if (locate_limit(goal, from, next, rate, beyond)) {
         rate_ = beyond;
         if (count && count_beyond) count_ = *count + (*count_beyond > *count ? 1 : -1);
-        return;
+        const CriticalPoint limit{CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1};
+        if (is_arc() && ends_between(from)) return true; // before it
+        result_.critical.push_back(limit);
+        accept(0, false);
+        return true;
       }
       at_ = next;
       system_.evaluate(at_, true);
@@ -259,11 +287,12 @@ private:
     }
     rate_ = way_ ? std::optional<double>(way_->load_factor) : std::nullopt;
     count_ = count_ahead_;
-    if (is_arc() && ends_between(from)) return;
+    if (is_arc() && ends_between(from)) return true;
     grow(goal, iterations);
     accept(iterations, goal.end_of_part);
-    if (result_.end == PathEnd::stopped) return;
+    if (result_.end == PathEnd::stopped) return true;
     if (!is_arc() && goal.end_of_part && ++part_ > options_.parts) result_.end = PathEnd::reached;
+    return true;
   }
 
   void grow(const Goal& goal, int iterations) {
@@ -318,8 +347,6 @@ private:
         f_low /= 2;
       }
     }
-    result_.critical.push_back({CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1});
-    accept(0, false);
     return true;
   }
 

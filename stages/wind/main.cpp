@@ -77,7 +77,7 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
   }
 }
 
-// `volume`: of the chamber's air, with that of the chambers connected to it.
+// `volume`: of the air now, that of connected chambers included, m3.
 solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, double volume,
                             std::string& text) {
   if (const auto* closed = std::get_if<workflow::ClosedGas>(&gas)) {
@@ -114,24 +114,21 @@ int run(int argc, char** argv) {
   common::Drive drive;
   drive.state = start.state;
   drive.contact_stops = settings.contact_stops;
-  if (!std::holds_alternative<workflow::LoadControl>(settings.control.kind) || start.stage().options.max_steps) {
-    throw base::InputError("controls other than load and `max_steps` are not wired");
-  }
-  drive.steps = settings.control.steps;
+  drive.control = settings.control;
   drive.model = common::make_model(start, drive.state, 1, 1);
-  for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
-    const pipeline::state::Chamber& chamber = drive.state.chambers[c];
-    if (chamber.connected_to >= 0) {
-      const auto& other = drive.state.chambers[static_cast<std::size_t>(chamber.connected_to)];
-      drive.modelled.push_back(fmt::format("chamber {}: shares the air of {}", chamber.name, other.name));
-      continue;
-    }
-    double volume = chamber.volume;
-    for (const pipeline::state::Chamber& other : drive.state.chambers) {
-      if (other.connected_to == static_cast<Index>(c)) volume += other.volume;
-    }
+  const std::vector<pipeline::state::Chamber>& chambers = drive.state.chambers;
+  for (std::size_t c = 0; c < chambers.size(); ++c) {
     std::string text;
-    drive.model.chambers[c].gas = gas_of(settings.gas.at(chamber.name), chamber, volume, text);
+    if (chambers[c].connected_to >= 0) {
+      text = fmt::format("chamber {}: one air with {}", chambers[c].name,
+                         chambers[static_cast<std::size_t>(chambers[c].connected_to)].name);
+    } else {
+      double volume = chambers[c].volume;
+      for (const pipeline::state::Chamber& other : chambers) {
+        if (other.connected_to == static_cast<Index>(c)) volume += other.volume;
+      }
+      drive.model.chambers[c].gas = gas_of(settings.gas.at(chambers[c].name), chambers[c], volume, text);
+    }
     drive.modelled.push_back(text);
   }
   for (const workflow::Load& load : settings.loads) {
@@ -139,6 +136,19 @@ int run(int argc, char** argv) {
     constexpr const char* kinds[] = {"wind as a pressure that follows the foil", "snow as a dead load on the plan",
                                      "patch as a dead load on the plan"};
     drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
+  }
+  if (settings.loads.size() == 1) { // then the load has a name and a unit of its own
+    const workflow::Load& load = settings.loads.front();
+    if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
+      drive.load_name = "wind";
+      drive.load_at_one = load.factor * wind->pressure;
+    } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
+      drive.load_name = "snow";
+      drive.load_at_one = load.factor * snow->weight;
+    } else {
+      drive.load_name = "patch";
+      drive.load_at_one = load.factor * std::get<workflow::PatchLoad>(load.kind).force.norm();
+    }
   }
   if (start.arguments.check) return 0;
   return common::run_equilibrium(start, std::move(drive));

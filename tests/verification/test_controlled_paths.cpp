@@ -199,4 +199,144 @@ TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
   EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, 0);
 }
 
+// --- a spherical balloon, one octant by symmetry
+// ----------------------------------------------------------------------------
+
+constexpr double radius = 0.1, film = 1e-3, shear = 0.4e6; // m, m, Pa
+
+// A triangle of the plan onto the octant; the planes of symmetry hold their normal direction. Load factor 1: 1 kPa.
+assembly::Model balloon(ElementType element, int divisions, const material::Law& law) {
+  const double high = std::sqrt(0.75);
+  const geometry::Triangle plan{{{0, 0}, {1, 0}, {0.5, high}}};
+  assembly::Model model;
+  model.mesh = geometry::meshing::stack(
+      geometry::meshing::mesh_plan(plan, {element, {}, std::array{divisions, divisions}}), {{"octant"}});
+  for (Vec3& x : model.mesh.nodes) {
+    const double w = x.y() / high;
+    const double v = x.x() - 0.5 * w;
+    x = radius * Vec3(1 - v - w, v, w).normalized();
+    for (int c = 0; c < 3; ++c) model.fixed.push_back(std::abs(x[c]) < 1e-9 * radius ? 1 : 0);
+  }
+  model.mesh.blocks.push_back({"nothing", geometry::BlockKind::base, {}}); // the planes are the other walls
+  model.foils.push_back(assembly::Foil{
+      element::make_reference(element, geometry::StressRule::full,
+                              element::corner_coordinates(model.mesh.blocks[0].connectivity, model.mesh.nodes),
+                              Vec3(0.3, 0.5, 0.1)),
+      law, film});
+  model.foils.emplace_back();
+  model.chambers.push_back({"inside", 0, 1, 0.0, chamber::Regulated{0, 1000}, 0.0});
+  model.origin = Vec3::Zero();
+  return model;
+}
+
+// p = 4 h / R (C1 + C2 s^2) (1/s - 1/s^7) of a Mooney-Rivlin sphere at stretch s (Holzapfel 2000, eq. 6.141)
+double pressure_of(const material::MooneyRivlin& law, double s) {
+  return 4 * film / radius * (law.c1 + law.c2 * s * s) * (1 / s - std::pow(s, -7));
+}
+// its extreme near a stretch
+double extreme_of(const material::MooneyRivlin& law, double from, double to, double sign) {
+  double best = -1e300;
+  for (int i = 0; i <= 200000; ++i) best = std::max(best, sign * pressure_of(law, from + (to - from) * i / 200000));
+  return sign * best;
+}
+double stretch_of(double octant) {
+  return std::cbrt(octant * 6 / std::numbers::pi) / radius;
+}
+
+struct Blown {
+  assembly::System system;
+  path::Newton newton;
+  assembly::Configuration at;
+  path::PathResult path;
+  std::vector<std::pair<double, double>> points; // stretch, pressure
+
+  Blown(assembly::Model model, const path::PathControl& control, path::ControlledPathOptions options = {})
+      : system(std::move(model), 1), newton(system, {}), at(tests::start_of(system.model())) {
+    path = path::follow_control(
+        system, newton, at, control, options,
+        [&](const path::Step&, const assembly::Configuration& c) {
+          points.emplace_back(stretch_of(system.chamber_volume(0)), c.pressures[0]);
+          return path::Verdict::go_on;
+        },
+        tests::tell);
+  }
+};
+
+std::vector<double> limits_of(const path::PathResult& path) {
+  std::vector<double> limits;
+  for (const path::CriticalPoint& point : path.critical) {
+    if (point.kind == path::CriticalPoint::Kind::limit) limits.push_back(point.pressures[0]);
+  }
+  return limits;
+}
+
+TEST(Balloon, NeoHookeanSpherePassesItsLimitPointByEveryControl) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = pressure_of(law, std::pow(7.0, 1.0 / 6)); // Holzapfel 2000: 7^(1/6)
+  double last_error = 1;
+  for (const int divisions : {4, 8}) {
+    path::ArcLengthPath arc;
+    arc.displacement = 2 * radius;
+    const Blown a(balloon(ElementType::T6, divisions, law), arc);
+    const Blown v(balloon(ElementType::T6, divisions, law), path::VolumePath{0, 27 * std::numbers::pi / 6 * 1e-3});
+    const Blown d(balloon(ElementType::T6, divisions, law), path::LargestDisplacementPath{0, 2 * radius});
+    for (const Blown* b : {&a, &v, &d}) {
+      ASSERT_EQ(b->path.end, path::PathEnd::reached) << b->path.reason;
+      const std::vector<double> limits = limits_of(b->path);
+      ASSERT_EQ(limits.size(), 1u);
+      EXPECT_NEAR(limits[0], limits_of(a.path)[0], 1e-8 * exact); // the mesh's limit point, whatever the control
+      double worst = 0;
+      for (const auto& [s, p] : b->points) worst = std::max(worst, std::abs(p - pressure_of(law, s)) / exact);
+      EXPECT_LT(worst, 0.02 / divisions);
+      std::printf("T6 %d: limit %.6f Pa (exact %.6f), worst %.1e of it on the way, %d steps, %d iterations, %d "
+                  "factorisations, %zu critical points\n",
+                  divisions, limits[0], exact, worst, b->path.steps, b->newton.work().iterations,
+                  b->newton.work().factorizations, b->path.critical.size());
+    }
+    const double error = std::abs(limits_of(a.path)[0] / exact - 1);
+    EXPECT_LT(error, last_error / 8); // third order or better
+    last_error = error;
+  }
+  EXPECT_LT(last_error, 1e-4);
+}
+
+TEST(Balloon, MooneyRivlinSphereFallsAndRisesAgain) {
+  const material::MooneyRivlin law{0.45 * shear, 0.05 * shear};
+  const double most = extreme_of(law, 1.01, 2, 1), least = extreme_of(law, 1.5, 5, -1);
+  path::ArcLengthPath arc;
+  arc.pressure = 1.2 * most; // on the rising branch far out
+  const Blown b(balloon(ElementType::T6, 8, law), arc);
+  ASSERT_EQ(b.path.end, path::PathEnd::reached) << b.path.reason;
+  const std::vector<double> limits = limits_of(b.path);
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_NEAR(limits[0], most, 1e-4 * most);
+  EXPECT_NEAR(limits[1], least, 1e-4 * most);
+  EXPECT_NEAR(b.points.back().second, 1.2 * most, 1e-9 * most);
+  std::printf("Mooney-Rivlin: %.6f, %.6f Pa (exact %.6f, %.6f), last stretch %.3f\n", limits[0], limits[1], most, least,
+              b.points.back().first);
+}
+
+TEST(Balloon, PressureControlStopsAtTheLimitPointAndNamesIt) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = pressure_of(law, std::pow(7.0, 1.0 / 6));
+  assembly::Model model = balloon(ElementType::T6, 8, law);
+  model.chambers[0].gas = chamber::Regulated{0, 2 * exact};
+  for (const int parts : {1, 20}) {
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    path::LoadPathOptions options;
+    options.parts = parts;
+    const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
+    std::printf("%s (%d iterations, %d factorisations)\n", result.reason.c_str(), newton.work().iterations,
+                newton.work().factorizations);
+    ASSERT_EQ(result.end, path::PathEnd::stuck);
+    ASSERT_EQ(result.critical.size(), 1u);
+    EXPECT_NEAR(result.critical[0].pressures[0], exact, 1e-4 * exact);
+    EXPECT_NE(result.reason.find("limit point at load factor 0.5"), std::string::npos) << result.reason;
+    EXPECT_NEAR(result.load_factor, 0.5, 1e-3);
+    EXPECT_LE(result.load_factor, 0.5 + 1e-4);
+  }
+}
+
 } // namespace
