@@ -92,6 +92,16 @@ TEST_F(DoubleChamber, CoupledTheMiddleFoilMovesPressureTwoFollowsOneAndTheCushio
     EXPECT_LT(two[i], one[i]) << i;
   }
   EXPECT_GT(middle.back(), 0.02);
+  // each foil hands the frame its net pressure on the plan, and its load; a step is accepted at 1e-9 of the forces (14
+  // kN)
+  const json last = summary_of("double_chamber", "patch_closed");
+  const auto balance = [&](const char* foil) { return last["foils"][foil]["balance"]["load"][2].get<double>(); };
+  EXPECT_NEAR(balance("upper"), top.back() * plan - 2380, 1e-4);
+  EXPECT_NEAR(balance("middle"), (bottom.back() - top.back()) * plan, 1e-4);
+  EXPECT_NEAR(balance("lower"), -bottom.back() * plan, 1e-4);
+  for (const char* foil : {"upper", "middle", "lower"}) {
+    EXPECT_LT(last["foils"][foil]["balance"]["error"].get<double>(), 1e-4) << foil;
+  }
   // each chamber keeps the air it had: its own gas law with an ambient pressure of 0
   const json start = summary_of("double_chamber", "inflated"), end = summary_of("double_chamber", "patch_closed");
   for (const char* chamber : {"top", "bottom"}) {
