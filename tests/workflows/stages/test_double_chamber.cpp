@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What projects/double_chamber says of itself (example B13 of the thesis), on a coarser mesh.
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -15,7 +16,8 @@ constexpr double plan = 18; // m2
 // Runs workflow files of projects on 12 x 6 squares of T6 a foil.
 class DoubleChamber : public InFolder {
 protected:
-  void run(const std::string& project, const std::string& file) const {
+  using Edits = std::vector<std::pair<std::string, std::string>>; // before, after
+  void run(const std::string& project, const std::string& file, const Edits& edits = {}) const {
     std::ostringstream text;
     text << std::ifstream(fs::path(PNEUMA_SOURCE_DIR) / "projects" / project / (file + ".yaml")).rdbuf();
     std::string coarse = text.str();
@@ -25,6 +27,7 @@ protected:
     };
     replace("../../configs", (fs::path(PNEUMA_SOURCE_DIR) / "configs").string());
     replace("[28, 14]", "[12, 6]");
+    for (const auto& [before, after] : edits) replace(before, after);
     std::ofstream(folder / (project + ".yaml")) << coarse;
     const Outcome outcome = pneuma("run " + project + ".yaml");
     ASSERT_EQ(outcome.code, 0) << outcome.text;
@@ -89,6 +92,16 @@ TEST_F(DoubleChamber, CoupledTheMiddleFoilMovesPressureTwoFollowsOneAndTheCushio
     EXPECT_LT(two[i], one[i]) << i;
   }
   EXPECT_GT(middle.back(), 0.02);
+  // each foil hands the frame its net pressure on the plan, and its load; a step is accepted at 1e-9 of the forces (14
+  // kN)
+  const json last = summary_of("double_chamber", "patch_closed");
+  const auto balance = [&](const char* foil) { return last["foils"][foil]["balance"]["load"][2].get<double>(); };
+  EXPECT_NEAR(balance("upper"), top.back() * plan - 2380, 1e-4);
+  EXPECT_NEAR(balance("middle"), (bottom.back() - top.back()) * plan, 1e-4);
+  EXPECT_NEAR(balance("lower"), -bottom.back() * plan, 1e-4);
+  for (const char* foil : {"upper", "middle", "lower"}) {
+    EXPECT_LT(last["foils"][foil]["balance"]["error"].get<double>(), 1e-4) << foil;
+  }
   // each chamber keeps the air it had: its own gas law with an ambient pressure of 0
   const json start = summary_of("double_chamber", "inflated"), end = summary_of("double_chamber", "patch_closed");
   for (const char* chamber : {"top", "bottom"}) {
@@ -117,6 +130,32 @@ TEST_F(DoubleChamber, RealAirHalvesTheDeflectionAndAHigherSetPointCarriesSnow) {
   const double weight = inflated["reactions"]["sum"][2];
   EXPECT_NEAR(raised["reactions"]["sum"][2].get<double>(), weight, 1e-5);
   EXPECT_NEAR(snow["reactions"]["sum"][2].get<double>(), weight + 500 * plan, 1e-5);
+}
+
+TEST_F(DoubleChamber, ConnectedIsTheSingleChamberWithAMiddleFoilThatStaysStill) {
+  run("double_chamber", "connected");
+  const auto inflated = summary_of("double_chamber", "inflated");
+  std::array<json, 3> connected;
+  const std::array<const char*, 3> stages = {"patch", "suction", "pressure"};
+  for (std::size_t i = 0; i < stages.size(); ++i) connected[i] = summary_of("double_chamber", stages[i]);
+  run("double_chamber", "connected",
+      {{"    - {name: middle, material: etfe_elastic, thickness: 200 um}\n", ""},
+       {"between: [upper, middle]}", "between: [upper, lower]}"},
+       {"    - {name: bottom, between: [middle, lower], connected_to: top}\n", ""}});
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const json &two = connected[i], one = summary_of("double_chamber", stages[i]);
+    const json &top = two["chambers"]["top"], &bottom = two["chambers"]["bottom"], &only = one["chambers"]["top"];
+    const double p = only["gauge_pressure"], volume = only["volume"];
+    // outer foils and air are the same equations: the residual at which a step is accepted is all between the two
+    EXPECT_NEAR(top["gauge_pressure"].get<double>(), p, 1e-6 * p) << stages[i];
+    EXPECT_NEAR(top["volume"].get<double>() + bottom["volume"].get<double>(), volume, 1e-8 * volume) << stages[i];
+    EXPECT_NEAR(deflection(two, "upper"), deflection(one, "upper"), 1e-6 * deflection(one, "upper")) << stages[i];
+    EXPECT_EQ(top["gauge_pressure"], bottom["gauge_pressure"]) << stages[i];
+    EXPECT_EQ(bottom["law"], "closed") << stages[i];
+    EXPECT_LT(deflection(two, "middle"), still) << stages[i];
+    // what the upper foil takes from its chamber goes to the other one
+    EXPECT_GT(std::abs(top["volume"].get<double>() - inflated["chambers"]["top"]["volume"].get<double>()), 0.01);
+  }
 }
 
 } // namespace
