@@ -116,8 +116,9 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
     one.count = 1;
     one.new_history = scratch.data();
     for (std::size_t i = 0; i < states.size(); ++i) {
-      const std::size_t e = i / static_cast<std::size_t>(points);
-      const geometry::ElementPositions<E> x = geometry::gather<E>(membrane.connectivity.subspan(e * n, n), positions);
+      const std::size_t element = i / static_cast<std::size_t>(points);
+      const geometry::ElementPositions<E> x =
+          geometry::gather<E>(membrane.connectivity.subspan(element * n, n), positions);
       PointState& state = states[i];
       state.deformation = x * Eigen::Map<const Eigen::Matrix<double, n, 2, Eigen::RowMajor>>(
                                   membrane.reference.derivatives.data() + i * n * 2);
@@ -128,9 +129,10 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
       state.thickness_ratio = material::thickness_stretch(membrane.law, one.strain[0], one.old_history);
       const material::Relaxed relaxed = material::relaxed(membrane.law, one.strain[0], one.old_history);
       state.surface = relaxed.surface;
+      state.strain = relaxed.strain;
 
-      const Vec3& felt = relaxed.strain;
-      const double area_ratio = std::sqrt((1 + 2 * felt[0]) * (1 + 2 * felt[1]) - felt[2] * felt[2]);
+      const Vec3& e = state.strain;
+      const double area_ratio = std::sqrt((1 + 2 * e[0]) * (1 + 2 * e[1]) - e[2] * e[2]);
       const double volume_ratio = area_ratio * state.thickness_ratio;
       const Vec3 normal = state.deformation.col(0).cross(state.deformation.col(1));
       state.axes.col(0) = state.deformation.col(0).normalized();

@@ -37,12 +37,13 @@ Index membrane_forces(const Membrane& membrane, std::span<const Vec3> positions,
 
 // State of one stress point, for results.
 struct PointState {
-  base::Mat32 deformation; // F, 3 x 2: stress-free material frame -> space
-  Vec3 stress;             // second Piola-Kirchhoff (S11, S22, S12), Pa
-  base::Mat2 cauchy;       // in the plane spanned by `axes`, Pa; of the foil itself, whose wrinkles lie over each other
-  base::Mat32 axes;        // orthonormal, tangent to the surface; the first along the carried first material axis
+  base::Mat32 deformation;    // F, 3 x 2: stress-free material frame -> space
+  Vec3 stress;                // second Piola-Kirchhoff (S11, S22, S12), Pa
+  base::Mat2 cauchy;          // in the plane spanned by `axes`, Pa, on the area of the foil itself
+  base::Mat32 axes;           // orthonormal, tangent to the surface; the first along the carried first material axis
   double thickness_ratio = 1; // current / nominal, of the foil itself
   material::Surface surface = material::Surface::taut;
+  Vec3 strain = Vec3::Zero(); // Green-Lagrange (E11, E22, 2 E12) of the foil itself: wrinkles laid flat
 };
 
 // Deformation and stress at all points [element][point]; the accepted history is read, not changed.

@@ -131,6 +131,7 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
       outcome.reason = next.reason;
       return outcome;
     }
+    tangent_.step_taken(length);
     last_move = shift > 0 ? span : 0;
     last_move = std::max(last_move, largest(step));
     configuration = std::move(trial);

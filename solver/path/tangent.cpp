@@ -16,6 +16,8 @@ namespace {
 
 constexpr double shift_growth = 8;
 constexpr int max_shift_tries = 25;
+constexpr double whole_step = 0.9; // of the line search
+constexpr double short_step = 0.3;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -90,6 +92,7 @@ double Tangent::artificial_tension() const {
 
 void Tangent::forget_artificial_tension() {
   for (Factor& f : factors_) f.shift = 0;
+  taken_ = 1;
 }
 
 double Tangent::reference_tension(const Configuration& configuration) const {
@@ -157,8 +160,15 @@ bool Tangent::factorize(const Configuration& configuration, Repair repair) {
     const assembly::FoilEquations& foil = system_.foils()[i];
     Factor& factor = factors_[i];
     factor.indefinite = factor.singular = false;
-    // from one iteration to the next a foil needs less and less of it
-    factor.shift = repair == Repair::indefinite || factor.shift < 1e-6 * tension ? 0.0 : factor.shift / shift_growth;
+    // From one iteration to the next a foil needs less and less of it, as long as whole steps are good. Steps that had
+    // to be cut are too long for the tangent: then as much or more.
+    if (repair == Repair::indefinite || (taken_ >= whole_step && factor.shift < 1e-6 * tension)) {
+      factor.shift = 0;
+    } else if (taken_ >= whole_step) {
+      factor.shift /= shift_growth;
+    } else if (taken_ < short_step) {
+      factor.shift = factor.shift > 0 ? factor.shift * shift_growth : 1e-3 * tension;
+    }
     if (factor.shift > 0) {
       done[i] = add_tension(i, tension, count[i]) ? 1 : 0;
       return;

@@ -76,6 +76,8 @@ public:
   bool factorize(const Configuration& configuration, Repair repair);
   double artificial_tension() const; // N/m, the largest in the last factors; 0: none
   void forget_artificial_tension();  // start the search for the smallest anew
+  // What a line search made of the last step decides about the artificial tension of the next.
+  void step_taken(double length) { taken_ = length; }
 
   // Newton's step at constant load factor.
   Change step(const Configuration& configuration);
@@ -124,6 +126,7 @@ private:
   VecX border_scale_;       // of its borders
   std::vector<Index> laws_; // chambers whose pressure is unknown
   bool whole_is_needed_ = false;
+  double taken_ = 1; // part of the last step
 };
 
 // Adds the seconds of its life to a sum.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "geometry/surface.h"
@@ -11,6 +12,8 @@
 namespace pneuma::stages::common {
 
 namespace {
+
+using solver::material::Surface;
 
 struct Pair {
   double larger, smaller;
@@ -60,6 +63,20 @@ std::vector<Piece> pieces_of(const geometry::Mesh& mesh, const geometry::Block& 
   return pieces;
 }
 
+// The elements that carry something at one stress point at least: only their places are determined.
+geometry::Block not_slack(const geometry::Mesh& mesh, const geometry::Block& block, std::span<const double> surface) {
+  geometry::Block carrying{block.name, block.kind, {}};
+  const auto elements = static_cast<std::size_t>(mesh.element_count(block));
+  const std::size_t points = surface.size() / elements;
+  for (std::size_t e = 0; e < elements; ++e) {
+    const std::span<const double> states = surface.subspan(e * points, points);
+    if (std::all_of(states.begin(), states.end(), [](double state) { return state == 2; })) continue;
+    const std::span<const Index> nodes = mesh.element_nodes(block, static_cast<Index>(e));
+    carrying.connectivity.insert(carrying.connectivity.end(), nodes.begin(), nodes.end());
+  }
+  return carrying;
+}
+
 // Nodal fields and extremes from `tensors` [element][point][cauchy 3, C 3].
 void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry::StressRule rule,
              std::span<const Index> strip_of_element, std::span<const Vec3> now, const std::vector<double>& tensors,
@@ -79,7 +96,10 @@ void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry:
     for (const Index node : own) {
       const auto k = static_cast<std::size_t>(node);
       const double* t = nodal.data() + 6 * k;
-      const Pair stress = eigenvalues(t[0], t[1], t[2]);
+      Pair stress = eigenvalues(t[0], t[1], t[2]);
+      if (r.tension_field) { // the fit overshoots where tension ends
+        stress = {std::max(stress.larger, 0.0), std::max(stress.smaller, 0.0)};
+      }
       const Pair strain = strains_of(t[3], t[4], t[5]);
       const auto set = [&](Extreme& extreme, std::vector<double>& field, double value) {
         widen(extreme, value, now[k], first);
@@ -107,6 +127,23 @@ void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry:
   }
 }
 
+// Mean over each element's stress points; NaN on the other foils.
+pipeline::state::Field surface_state(const geometry::Mesh& mesh, const FoilResults& r) {
+  pipeline::state::Field field{"surface_state." + r.name, "1", pipeline::state::Location::cell, 1, -1, {}};
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    const auto elements = static_cast<std::size_t>(mesh.element_count(mesh.blocks[b]));
+    const bool own = static_cast<Index>(b) == r.block;
+    const std::size_t points = own ? r.surface.size() / elements : 0;
+    for (std::size_t e = 0; e < elements; ++e) {
+      const auto begin = r.surface.begin() + static_cast<std::ptrdiff_t>(e * points);
+      field.values.push_back(own ? std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(points), 0.0) /
+                                       static_cast<double>(points)
+                                 : std::nan(""));
+    }
+  }
+  return field;
+}
+
 } // namespace
 
 FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::element::Membrane& membrane,
@@ -117,7 +154,7 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   r.name = b.name;
   r.block = block;
   r.area = geometry::surface_area(mesh, b, now);
-  r.sag = geometry::deepest_point(mesh, b, now, geometry::edge_plane(mesh, now)).distance;
+  r.tension_field = solver::material::has_tension_field(membrane.law);
 
   const std::vector<solver::element::PointState> points = solver::element::point_states(membrane, now, history);
   std::vector<double> tensors; // cauchy 3, C 3
@@ -126,13 +163,13 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   double total = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const solver::element::PointState& p = points[i];
-    const Vec3 c(p.deformation.col(0).squaredNorm(), p.deformation.col(1).squaredNorm(),
-                 p.deformation.col(0).dot(p.deformation.col(1)));
+    const Vec3 c(1 + 2 * p.strain[0], 1 + 2 * p.strain[1], p.strain[2]);
     const double shear = 0.5 * (p.cauchy(0, 1) + p.cauchy(1, 0));
     tensors.insert(tensors.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear, c[0], c[1], c[2]});
     r.cauchy.insert(r.cauchy.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear});
     r.thickness.push_back(membrane.thickness * p.thickness_ratio);
     r.thickness_min = std::min(r.thickness_min, r.thickness.back());
+    r.surface.push_back(static_cast<double>(p.surface));
     const Pair stress = eigenvalues(p.cauchy(0, 0), p.cauchy(1, 1), shear);
     const Pair strain = strains_of(c[0], c[1], c[2]);
     const bool first = i == 0;
@@ -146,16 +183,24 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
     gauss(r.strain2, strain.smaller);
     const double area = membrane.reference.area[i];
     total += area;
+    if (p.surface == Surface::wrinkled) r.wrinkled_area += area;
+    if (p.surface == Surface::slack) r.slack_area += area;
     constexpr double rounding = 1; // Pa
     if (stress.smaller < -rounding) {
       r.compressed_area += area;
       r.compression = std::max(r.compression, -stress.smaller);
     }
   }
-  r.compressed_area /= total;
+  for (double* part : {&r.compressed_area, &r.wrinkled_area, &r.slack_area}) *part /= total;
 
   recover(mesh, b, membrane.reference.rule, strip_of_element, now, tensors, r);
-  for (const Index node : b.connectivity) {
+  const geometry::Block carrying = not_slack(mesh, b, r.surface);
+  if (carrying.connectivity.empty()) {
+    r.sag = r.max_deflection = std::nan("");
+    return r;
+  }
+  r.sag = geometry::deepest_point(mesh, carrying, now, geometry::edge_plane(mesh, now)).distance;
+  for (const Index node : carrying.connectivity) {
     const auto k = static_cast<std::size_t>(node);
     r.max_deflection = std::max(r.max_deflection, (now[k] - start[k]).norm());
   }
@@ -184,6 +229,10 @@ void summarize(const FoilResults& r, Summary& summary) {
   summary.set(foil + "sag", r.sag);
   summary.set(foil + "max_deflection", r.max_deflection);
   summary.set(foil + "thickness_min", r.thickness_min);
+  if (r.tension_field) {
+    summary.set(foil + "wrinkled_area_fraction", r.wrinkled_area);
+    summary.set(foil + "slack_area_fraction", r.slack_area);
+  }
   const std::pair<const char*, const Extreme*> all[] = {{"von_mises", &r.von_mises},
                                                         {"principal_stress_1", &r.stress1},
                                                         {"principal_stress_2", &r.stress2},
@@ -252,6 +301,9 @@ void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> s
     }
   }
   state.fields.push_back(std::move(mean));
+  for (const FoilResults& r : results) {
+    if (r.tension_field) state.fields.push_back(surface_state(state.mesh, r));
+  }
   for (const FoilResults& r : results) {
     state.fields.push_back({"cauchy_stress." + r.name, "Pa", Location::gauss, 3, r.block, r.cauchy});
     state.fields.push_back({"thickness." + r.name, "m", Location::gauss, 1, r.block, r.thickness});

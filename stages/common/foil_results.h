@@ -21,18 +21,25 @@ struct FoilResults {
   std::string name;
   Index block = 0;
   double area = 0;            // m2
-  double sag = 0;             // m
-  double max_deflection = 0;  // m, against the stage's start
+  double sag = 0;             // m, and
+  double max_deflection = 0;  // m, against the stage's start: NaN of a foil that is slack all over
   double thickness_min = 0;   // m
   double compressed_area = 0; // part of the area whose smaller principal stress is negative
   double compression = 0;     // Pa, largest
+  bool tension_field = false; // the law has one; only then are there
+  double wrinkled_area = 0;   // parts of the stress-free area
+  double slack_area = 0;
   Extreme von_mises, stress1, stress2, strain1, strain2;
 
   // recovered, per node of the mesh (0 where the foil has none): Pa, Pa, Pa, -, -
   std::vector<double> nodal_von_mises, nodal_stress1, nodal_stress2, nodal_strain1, nodal_strain2;
-  // at the stress points: Cauchy stress (s11, s22, s12), Pa, in the carried material frame; thickness, m
-  std::vector<double> cauchy, thickness;
+  // at the stress points: Cauchy stress (s11, s22, s12), Pa, in the carried material frame; thickness, m; surface
+  // state: 0 taut, 1 wrinkled, 2 slack
+  std::vector<double> cauchy, thickness, surface;
 };
+
+// Stresses, strains and thickness are those of the foil itself: where it wrinkles, with the wrinkles laid flat. Where
+// it is slack its position is not determined: sag and deflection are those of elements that are not slack all over.
 
 // `strip_of_element`: of a foil welded from strips, else empty. Stress jumps at seams and its frames differ: each strip
 // is recovered by itself, and a seam's node carries the larger value of its strips.
@@ -47,7 +54,9 @@ void summarize_mesh(const State& state, Summary& summary);
 void summarize(const FoilResults& results, Summary& summary);
 
 // Adds the fields that ParaView shows: displacement; von_mises, principal stresses and strains at the nodes of each
-// foil (`von_mises.upper`); the mean von Mises stress of each element; stress and thickness at the stress points.
+// foil (`von_mises.upper`); the mean von Mises stress of each element and, of foils with a tension field, the mean
+// surface state (`surface_state.upper`: 0 taut, 1 wrinkled, 2 slack, where positions mean nothing); stress and
+// thickness at the stress points.
 void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> start, State& state);
 
 } // namespace pneuma::stages::common

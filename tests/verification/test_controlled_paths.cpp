@@ -339,4 +339,67 @@ TEST(Balloon, PressureControlStopsAtTheLimitPointAndNamesIt) {
   }
 }
 
+// A square sheet of Mooney-Rivlin rubber pulled with equal dead forces along both sides: up to a stretch it stays
+// square, beyond it could as well become oblong (Kearsley 1986, Int. J. Solids Structures 22, 111). With W of the
+// stretches,
+//   W11 = W12:  C1 (1 + s^-6) = C2 (s^2 - 3 s^-4),  traction 2 C1 (s - s^-5) + 2 C2 (s^3 - s^-3).
+TEST(ControlledPath, BifurcationOfAnEquallyPulledSheetIsFoundAndNamed) {
+  const material::MooneyRivlin law{0.2e6, 0.1e6};
+  double low = 1.2, high = 2;
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.5 * (low + high);
+    (law.c1 * (1 + std::pow(s, -6)) > law.c2 * (s * s - 3 * std::pow(s, -4)) ? low : high) = s;
+  }
+  const auto traction = [&](double s) {
+    return 2 * law.c1 * (s - std::pow(s, -5)) + 2 * law.c2 * (s * s * s - std::pow(s, -3));
+  };
+  const double side = 0.5;
+  for (const ElementType element : {ElementType::Q4, ElementType::T3, ElementType::T6}) {
+    assembly::Model model;
+    model.mesh = geometry::meshing::stack(
+        geometry::meshing::mesh_plan(geometry::Rectangle{side, side}, {element, {}, std::array{2, 2}}), {{"quarter"}});
+    const std::size_t nodes = model.mesh.nodes.size();
+    model.dead_to = VecX::Zero(static_cast<Eigen::Index>(3 * nodes));
+    for (Vec3& x : model.mesh.nodes) x += Vec3(side / 2, side / 2, 0);
+    for (const geometry::Edge& edge : model.mesh.edges) {
+      if (edge.name != "east" && edge.name != "north") continue;
+      const std::vector<double> weights = geometry::is_quadratic(element) ? std::vector{1.0 / 6, 4.0 / 6, 1.0 / 6}
+                                                                          : std::vector{0.5, 0.5}; // of one side
+      const std::size_t along = weights.size() - 1;
+      for (std::size_t k = 0; k + along < edge.nodes.size(); k += along) {
+        for (std::size_t a = 0; a <= along; ++a) {
+          model.dead_to[3 * edge.nodes[k + a] + (edge.name == "east" ? 0 : 1)] += weights[a] * film * side / 2;
+        }
+      }
+    }
+    for (const Vec3& x : model.mesh.nodes) {
+      for (int c = 0; c < 3; ++c) model.fixed.push_back(c == 2 || std::abs(x[c]) < 1e-9 ? 1 : 0);
+    }
+    model.foils.push_back(assembly::Foil{
+        element::make_reference(element, geometry::StressRule::full,
+                                element::corner_coordinates(model.mesh.blocks[0].connectivity, model.mesh.nodes),
+                                Vec3(1, 0, 0)),
+        law, film});
+    model.dead_to *= traction(2); // load factor 1
+
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    path::ArcLengthPath arc;
+    arc.load_factor = 0.6;
+    const path::PathResult result = path::follow_control(system, newton, at, arc, {}, {}, tests::tell);
+    ASSERT_EQ(result.end, path::PathEnd::reached) << result.reason;
+    ASSERT_GE(result.critical.size(), 1u) << name_of(element); // the mesh has others, where it becomes uneven
+    EXPECT_EQ(result.critical[0].kind, path::CriticalPoint::Kind::bifurcation);
+    const double exact = traction(0.5 * (low + high)) / traction(2);
+    EXPECT_NEAR(result.critical[0].load_factor, exact, 1e-4 * exact); // bisected to 1e-4 of a step
+    std::printf("%s: bifurcation at load factor %.6f (exact %.6f), stretch %.4f\n", name_of(element),
+                result.critical[0].load_factor, exact, low);
+    // it stayed square, which is not stable any more
+    EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, static_cast<int>(result.critical.size()));
+    const Vec3 corner = path::farthest(system, -1, at).move;
+    EXPECT_NEAR(corner.x(), corner.y(), 1e-7 * side);
+  }
+}
+
 } // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -21,7 +22,8 @@ struct Welded {
   std::vector<Index> strip_of_element;
   solver::element::Membrane membrane;
 
-  Welded(ElementType element, const std::array<double, 2>& strain)
+  Welded(ElementType element, const std::array<double, 2>& strain,
+         const solver::material::Law& law = solver::material::StVenantKirchhoff{modulus, ratio})
       : mesh(geometry::meshing::mesh_plan(geometry::Rectangle{4, 2},
                                           {element, {}, std::array{8, 4}, geometry::meshing::Pattern::structured})) {
     const geometry::Block& block = mesh.blocks[0];
@@ -35,8 +37,7 @@ struct Welded {
       for (std::size_t k = 3 * e * n; k < 3 * (e + 1) * n; ++k) flat[k] /= 1 + strain[strip];
     }
     membrane = {block.connectivity,
-                solver::element::make_reference(element, geometry::StressRule::full, flat, Vec3::UnitX()),
-                solver::material::StVenantKirchhoff{modulus, ratio}, 200e-6};
+                solver::element::make_reference(element, geometry::StressRule::full, flat, Vec3::UnitX()), law, 200e-6};
   }
   Welded(const Welded&) = delete;
 
@@ -87,6 +88,49 @@ TEST(FoilResults, OfOneStripAreThoseOfTheWhole) {
   const FoilResults whole = foil.results({}), single = foil.results(one);
   EXPECT_EQ(whole.von_mises.max, single.von_mises.max);
   EXPECT_EQ(whole.nodal_stress2, single.nodal_stress2);
+}
+
+TEST(FoilResults, OfSlackAreasHoldNeitherSagNorDeflectionNorStrain) {
+  const solver::material::Law field =
+      solver::material::TensionField<solver::material::StVenantKirchhoff>{{modulus, ratio}};
+  const std::vector<Index>& none = {};
+  for (const ElementType element : {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9}) {
+    const Welded foil(element, {0.004, -0.002}, field); // the half at y < 0 is slack
+    std::vector<Vec3> start = foil.mesh.nodes;
+    for (Vec3& x : start) {
+      if (x.y() > -1e-9) x.x() -= 0.01; // has moved by 0.01 m since
+      if (x.y() < -0.1) x.z() += 0.3;   // slack: anywhere
+    }
+    const FoilResults r = foil_results(foil.mesh, 0, foil.membrane, none, start, foil.mesh.nodes, {});
+    EXPECT_NEAR(r.slack_area, 1.004 * 1.004 / (1.004 * 1.004 + 0.998 * 0.998), 1e-12) << name_of(element);
+    EXPECT_EQ(r.wrinkled_area, 0);
+    EXPECT_NEAR(r.max_deflection, 0.01, 1e-12) << name_of(element);
+    EXPECT_NEAR(r.strain2.max_gauss, 0.004, 1e-12);
+    EXPECT_GE(r.stress2.min, 0); // recovered across the jump
+    EXPECT_EQ(r.compressed_area, 0);
+    const Welded slack(element, {-0.004, -0.002}, field);
+    EXPECT_TRUE(std::isnan(slack.results({}).max_deflection));
+    EXPECT_TRUE(std::isnan(slack.results({}).sag));
+    EXPECT_EQ(slack.results({}).slack_area, 1);
+  }
+}
+
+TEST(FoilResults, ShowTheSurfaceStateOfFoilsWithATensionFieldOnly) {
+  for (const bool with : {false, true}) {
+    const solver::material::StVenantKirchhoff law{modulus, ratio};
+    const Welded foil(ElementType::T6, {0.004, -0.002},
+                      with ? solver::material::Law(solver::material::TensionField{law}) : law);
+    State state;
+    state.mesh = foil.mesh;
+    add_fields({foil.results({})}, foil.mesh.nodes, state);
+    const auto field = std::find_if(state.fields.begin(), state.fields.end(),
+                                    [](const auto& f) { return f.name == "surface_state.plan"; });
+    ASSERT_EQ(field != state.fields.end(), with);
+    if (!with) continue;
+    for (std::size_t e = 0; e < foil.strip_of_element.size(); ++e) {
+      EXPECT_EQ(field->values[e], foil.strip_of_element[e] == 0 ? 0 : 2);
+    }
+  }
 }
 
 } // namespace
