@@ -103,17 +103,21 @@ std::optional<InflatedBalloon> inflate(const Balloon& balloon, double stretch) {
   return result;
 }
 
-std::optional<InflatedBalloon> limit_point(const Balloon& balloon) {
+std::vector<InflatedBalloon> limit_points(const Balloon& balloon) {
   constexpr double step = 0.005, last = 20;
-  const auto falls = [&](double stretch) {
+  double sign = -1; // of the slope behind the next limit point
+  const auto passed = [&](double stretch) {
     const auto state = inflate(balloon, stretch);
-    return state ? -state->slope : std::nan("");
+    return state ? sign * state->slope : std::nan("");
   };
+  std::vector<InflatedBalloon> points;
   for (int i = 0; 1 + i * step < last; ++i) {
     const double low = 1 + i * step, high = low + step;
-    if (falls(high) > 0) return inflate(balloon, root_between(low, high, falls));
+    if (!(passed(high) > 0)) continue;
+    points.push_back(inflate(balloon, root_between(low, high, passed)).value());
+    sign = -sign;
   }
-  return std::nullopt;
+  return points;
 }
 
 } // namespace pneuma::solver::analytical

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
 namespace pneuma::solver::analytical {
 
@@ -56,8 +57,8 @@ struct InflatedBalloon {
 // is less, or if the law has no axial balance.
 std::optional<InflatedBalloon> inflate(const Balloon& balloon, double stretch);
 
-// The first maximum of the pressure, to rounding; none if the pressure grows up to a stretch of 20. A maximum and the
-// minimum behind it that lie closer than 0.005 in stretch are not told apart and go unseen.
-std::optional<InflatedBalloon> limit_point(const Balloon& balloon);
+// Where the pressure has a maximum or, behind one, a minimum, in the order of the stretch up to 20, to rounding: the
+// limit points of an inflation. A maximum and a minimum that lie closer than 0.005 in stretch go unseen.
+std::vector<InflatedBalloon> limit_points(const Balloon& balloon);
 
 } // namespace pneuma::solver::analytical

@@ -17,6 +17,7 @@ std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const C
   ControlledPathOptions options;
   options.first_step = reach;
   options.max_steps = 12;
+  options.smallest_step = 1e-2; // a look, not a search
   options.only_looking = true;
   ArcLengthPath arc;
   arc.load_factor = from.load_factor + 2 * reach;
@@ -82,6 +83,10 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
     });
+    if (outcome.converged && turned_over(system, configuration, trial)) {
+      outcome.converged = false;
+      outcome.reason = "an element would be turned over";
+    }
     if (!outcome.converged) {
       const double reach = trial.load_factor - result.load_factor;
       length = reach / 4;
