@@ -212,8 +212,10 @@ std::string expected(const Option& option) {
     return "a plain number";
   case Type::quantity:
     return dimension_of(option.unit) + " with its unit";
-  case Type::choice:
-    return "one of: " + joined(available_names(option.members));
+  case Type::choice: {
+    const std::vector<std::string> names = available_names(option.members);
+    return (names.size() == 1 ? "" : "one of: ") + joined(names);
+  }
   case Type::list:
     return "a list [...]";
   case Type::group:

@@ -119,8 +119,13 @@ std::map<std::string, double> Builder::pressures_of(const Value& stage, const st
   for (const std::string& name : chamber_names_) {
     const std::string air = air_of(name);
     if (air == name && table->valid && table->find(name) == nullptr) {
+      const auto sharing = std::find_if(table->members.begin(), table->members.end(),
+                                        [&](const auto& member) { return air_of(member.first) == name; });
       fail(table->mark,
-           fmt::format("`gauge_pressure` says nothing about the chamber `{}`; 0 Pa leaves it empty", name));
+           fmt::format("`gauge_pressure` says nothing about the chamber `{}`; {}", name,
+                       sharing == table->members.end()
+                           ? "0 Pa leaves it empty"
+                           : fmt::format("`{}` is connected to it and takes its pressure", sharing->first)));
     }
     const Value *shared = (*table)[air], *own = (*table)[name];
     if (air == name || shared == nullptr || !connections_known_) continue;

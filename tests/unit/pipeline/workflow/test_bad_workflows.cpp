@@ -511,7 +511,7 @@ const BadKeys pattern_cases[] = {
      {"`lines` must be one of: geodesic, straight, not `geodetic`; did you mean `geodesic`?"}},
     {"UnknownDirection",
      "strips_per_foil: 6, direction: @atuo",
-     {"`direction` must be one of: auto or an angle with its unit, not `atuo`; did you mean `auto`?"}},
+     {"`direction` must be auto or an angle with its unit, not `atuo`; did you mean `auto`?"}},
     {"DirectionWithoutUnit",
      "strips_per_foil: 6, direction: @30",
      {"`direction`: `30` has no unit; expected an angle such as `30 deg`"}},
@@ -520,7 +520,7 @@ const BadKeys pattern_cases[] = {
      {"`30 m` has a unit of another kind; expected an angle"}},
     {"DirectionAsAVector",
      "strips_per_foil: 6, direction: @[1, 0]",
-     {"`direction` must be one of: auto or an angle with its unit, not a list"}},
+     {"`direction` must be auto or an angle with its unit, not a list"}},
     {"ChosenByBesideADirection",
      "strips_per_foil: 6, direction: 30 deg, @chosen_by: waste",
      {"`chosen_by` has no effect beside a given `direction`: it chooses among directions; leave it out"}},
@@ -598,9 +598,9 @@ INSTANTIATE_TEST_SUITE_P(Cases, BadPattern, testing::ValuesIn(pattern_cases),
 const BadKeys control_cases[] = {
     {"UnknownWord",
      "@lood",
-     {"`control` must be one of: load or a map with the key `type` (one of: load, displacement, volume, arc_length), "
+     {"`control` must be load or a map with the key `type` (one of: load, displacement, volume, arc_length), "
       "not `lood`; did you mean `load`?"}},
-    {"DisplacementInAWord", "@displacement", {"`control` must be one of: load or a map with the key `type`"}},
+    {"DisplacementInAWord", "@displacement", {"`control` must be load or a map with the key `type`"}},
     {"NoType", "@{steps: 3}", {"`control` lacks the key `type`: one of load, displacement, volume, arc_length"}},
     {"UnknownType",
      "{type: @arclength}",
@@ -632,7 +632,7 @@ const BadKeys control_cases[] = {
      {"`at` must have 2 entries, not 3"}},
     {"UnknownPlace",
      "{type: displacement, at: @apex, foil: upper, until: 0.1 m}",
-     {"`at` must be one of: max or a list [...], not `apex`"}},
+     {"`at` must be max or a list [...], not `apex`"}},
     {"DisplacementOfNoFoil",
      "@{type: displacement, until: 0.1 m}",
      {"`control` lacks the key `foil`; foils: upper, middle, lower"}},
@@ -711,6 +711,17 @@ TEST(ConnectedChamber, HasNoOtherPressureThanTheOneItIsConnectedTo) {
   EXPECT_THAT(to_string(result.problems[0]),
               testing::EndsWith("w.yaml:18:78: `bottom` is connected to `top` and has its pressure, 400 "
                                 "Pa, not 300 Pa; leave it out"));
+}
+
+TEST(ConnectedChamber, DoesNotStateThePressureInsteadOfTheOneItIsConnectedTo) {
+  const Folder folder;
+  const std::string text = replaced(replaced(connected(), "bottom: 300 Pa", "bottom: 400 Pa"),
+                                    "{top: 400 Pa, bottom: 400 Pa}", "{bottom: 400 Pa}");
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_THAT(to_string(result.problems[0]),
+              testing::EndsWith("w.yaml:17:53: `gauge_pressure` says nothing about the chamber `top`; `bottom` is "
+                                "connected to it and takes its pressure"));
 }
 
 TEST(ConnectedChamber, HasNoGasOfItsOwnInAWindStage) {
