@@ -44,7 +44,8 @@ public:
     count_ = count_ahead_;
     while (result_.end == PathEnd::stuck && result_.reason.empty()) {
       if (result_.steps >= options_.max_steps) {
-        result_.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options_.max_steps, at_.load_factor);
+        result_.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options_.max_steps,
+                                     at_.load_factor);
       } else if (way_) {
         walk();
       } else {
@@ -198,6 +199,7 @@ private:
   // Without a tangent (flat, slack) a step of load control, short enough not to pass the first goal.
   void step_by_load() {
     double step = options_.first_step * (last_ && last_->load_factor < 0 ? -1 : 1);
+    bool away = false;
     for (int tries = 0; tries < 16; ++tries, step /= cut) {
       Configuration next = at_;
       next.load_factor += step;
@@ -208,6 +210,7 @@ private:
       if (!is_arc()) {
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;
+        away = away || !forward;
         if (!forward || std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
           continue;
       }
@@ -221,9 +224,9 @@ private:
       return;
     }
     system_.evaluate(at_, true);
-    result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: the cushion has no stiffness, and no "
-                                 "small part of the load gives it one",
-                                 at_.load_factor);
+    result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor,
+                                 away ? "the load moves the controlled quantity away from its goal"
+                                      : "the cushion has no stiffness, and no small part of the load gives it one");
   }
 
   Held held_quantity_at(const Configuration& next) const {

@@ -71,7 +71,8 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
   while (part_number <= options.parts) {
     if (result.steps == options.max_steps) {
       system.evaluate(configuration, true);
-      result.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options.max_steps, result.load_factor);
+      result.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options.max_steps,
+                                  result.load_factor);
       return result;
     }
     const double goal = part_number == options.parts ? 1.0 : part * part_number;

@@ -191,11 +191,12 @@ stages:
   EXPECT_NEAR(summary("held")["chambers"]["main"]["volume"].get<double>(), 1.5e-3, 1e-10);
 }
 
-// A skin of rubber over a rigid base, with more stages.
-std::string balloon(const std::string& more) {
+// A skin of rubber over a rigid base, flat and without stress, with more stages.
+std::string balloon(const std::string& more, const std::string& tension_field = "off") {
   return R"(pneuma: 1
 name: Balloon
-materials: {rubber: {law: neo_hooke, C1: 200 kPa}}
+materials: {rubber: {law: neo_hooke, C1: 200 kPa, tension_field: )" +
+         tension_field + R"(}}
 site: {gravity: off}
 cushion:
   plan: {shape: circle, radius: 0.1 m}
@@ -212,23 +213,27 @@ std::string inflated_by(const std::string& name, const std::string& control) {
 }
 
 TEST_F(Stages, ControlsEndWhereTheyAreTold) {
-  write(balloon(inflated_by("place", "{type: displacement, at: [0 m, 0 m], until: 3 cm, steps: 3}") +
-                inflated_by("largest", "{type: displacement, until: 3 cm}") +
-                inflated_by("volume", "{type: volume, until: 1 l}") +
-                inflated_by("pressure", "{type: arc_length, until: {pressure: 3 kPa, volume: 1 m3}}") +
-                inflated_by("peak", "{type: arc_length, until: {after_peak: 0.9}}")));
-  const Outcome run = pneuma("run w.yaml");
-  ASSERT_EQ(run.code, 0) << run.text;
-  EXPECT_NEAR(summary("place")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
-  EXPECT_NEAR(summary("largest")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
-  EXPECT_EQ(json::parse(std::ifstream(out("place") / "steps.hdf.series"))["files"].size(), 3U);
-  EXPECT_NEAR(summary("volume")["chambers"]["main"]["volume"].get<double>(), 1e-3, 1e-12);
-  EXPECT_NEAR(summary("pressure")["chambers"]["main"]["gauge_pressure"].get<double>(), 3000, 1e-3);
-  // the load is 1 kPa times the load factor; past the limit point a held pressure would not stay
-  const json peak = summary("peak");
-  EXPECT_EQ(peak["peak"]["quantity"], "gauge_pressure");
-  EXPECT_NEAR(peak["load_factor"].get<double>(), 0.9 * peak["peak"]["value"].get<double>() / 1000, 1e-6);
-  EXPECT_EQ(peak["stability"]["load_held"], 1);
+  for (const std::string tension_field : {"off", "on"}) {
+    SCOPED_TRACE(tension_field);
+    write(balloon(inflated_by("place", "{type: displacement, at: [0 m, 0 m], until: 3 cm, steps: 3}") +
+                      inflated_by("largest", "{type: displacement, until: 3 cm}") +
+                      inflated_by("volume", "{type: volume, until: 1 l}") +
+                      inflated_by("pressure", "{type: arc_length, until: {pressure: 3 kPa, volume: 1 m3}}") +
+                      inflated_by("peak", "{type: arc_length, until: {after_peak: 0.9}}"),
+                  tension_field));
+    const Outcome run = pneuma("run w.yaml");
+    ASSERT_EQ(run.code, 0) << run.text;
+    EXPECT_NEAR(summary("place")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
+    EXPECT_NEAR(summary("largest")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
+    EXPECT_EQ(json::parse(std::ifstream(out("place") / "steps.hdf.series"))["files"].size(), 3U);
+    EXPECT_NEAR(summary("volume")["chambers"]["main"]["volume"].get<double>(), 1e-3, 1e-12);
+    EXPECT_NEAR(summary("pressure")["chambers"]["main"]["gauge_pressure"].get<double>(), 3000, 1e-3);
+    // the load is 1 kPa times the load factor; past the limit point a held pressure would not stay
+    const json peak = summary("peak");
+    EXPECT_EQ(peak["peak"]["quantity"], "gauge_pressure");
+    EXPECT_NEAR(peak["load_factor"].get<double>(), 0.9 * peak["peak"]["value"].get<double>() / 1000, 1e-6);
+    EXPECT_EQ(peak["stability"]["load_held"], 1);
+  }
 }
 
 TEST_F(Stages, ControlledPointThatCannotMoveIsRefusedAtItsPlace) {
