@@ -91,11 +91,11 @@ private:
     std::optional<Change> way = tangent.along(at_);
     if (!way) return;
     count_ahead_ = tangent.count(at_, nullptr).load_held;
-    way_ = oriented(std::move(*way));
+    way_ = oriented(*way);
   }
 
   // Along the last step; at first towards more load (arc length) or towards the goal.
-  Change oriented(Change way) {
+  Change oriented(const Change& way) {
     double sign = way.load_factor;
     if (last_) {
       sign = dot_u(way, *last_);
