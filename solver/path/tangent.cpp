@@ -14,8 +14,8 @@ namespace pneuma::solver::path {
 
 namespace {
 
-constexpr double shift_growth = 8;
-constexpr int max_shift_tries = 25;
+constexpr double shift_growth = 4;
+constexpr int max_shift_tries = 40;
 constexpr double whole_step = 0.9; // of the line search
 constexpr double short_step = 0.3;
 
