@@ -9,13 +9,13 @@
 #include <Eigen/LU>
 
 #include "geometry/box_grid.h"
+#include "geometry/plan_point.h"
 #include "geometry/shape_functions.h"
 
 namespace pneuma::geometry {
 
 namespace {
 
-using base::Mat2;
 using base::Mat3;
 using base::MatX;
 
@@ -51,39 +51,6 @@ Element<E> gather(const MatX& local, const std::vector<Index>& connectivity, Ind
   Element<E> x;
   for (int k = 0; k < n; ++k) x.col(k) = local.col(connectivity[static_cast<std::size_t>(e * n + k)]);
   return x;
-}
-
-// Height of the element at a place in plan, if the place lies on it and the element faces up there. Newton's method.
-template <ElementType E>
-std::optional<double> height_at(const Element<E>& x, const Vec2& at) {
-  const Vec2 low = x.template topRows<2>().rowwise().minCoeff();
-  const Vec2 high = x.template topRows<2>().rowwise().maxCoeff();
-  const double size = (high - low).maxCoeff();
-  const double margin = is_quadratic(E) ? 0.2 * size : 1e-9 * size; // curved sides leave the box of their nodes
-  if ((at.array() < low.array() - margin).any() || (at.array() > high.array() + margin).any()) return {};
-
-  constexpr bool triangle = corners_per_element(E) == 3;
-  Vec2 place = triangle ? Vec2(1.0 / 3, 1.0 / 3) : Vec2(0, 0);
-  constexpr int most = E == ElementType::T3 ? 2 : 15;
-  for (int iteration = 0; iteration < most; ++iteration) {
-    const auto shape = shape_functions<E>(place[0], place[1]);
-    const Eigen::Matrix<double, 3, 2> tangents = x * shape.derivative;
-    const Mat2 jacobian = tangents.template topRows<2>();
-    const double determinant = jacobian.determinant();
-    const Vec3 point = x * shape.value;
-    const Vec2 miss = at - point.head<2>();
-    if (miss.norm() <= 1e-12 * size) {
-      constexpr double edge = 1e-8; // a point on a side belongs to both neighbours
-      const bool on =
-          triangle ? place.minCoeff() >= -edge && place.sum() <= 1 + edge : place.cwiseAbs().maxCoeff() <= 1 + edge;
-      if (!on || determinant <= 1e-12 * size * size) return {};
-      return point.z();
-    }
-    if (!(std::abs(determinant) > 1e-14 * size * size)) return {};
-    place += jacobian.inverse() * miss;
-    if (!(place.cwiseAbs().maxCoeff() < 4)) return {};
-  }
-  return {};
 }
 
 template <ElementType E>
@@ -150,23 +117,23 @@ Gap GapSearch::search(std::span<const Vec3> positions) {
       point = gather<E>(local_, upper_, sample.element) * shape_functions<E>(sample.xi, sample.eta).value;
     }
     const Vec2 at = point.head<2>();
-    std::optional<double> height = height_at<E>(gather<E>(local_, lower_, sample.hint), at);
-    if (!height) {
+    std::optional<PlanPlace> below = place_in_plan<E>(gather<E>(local_, lower_, sample.hint), at);
+    if (!below) {
       if (!grid) grid = make_grid<E>(local_, lower_);
       for (const Index e : grid->at(at)) {
-        height = height_at<E>(gather<E>(local_, lower_, e), at);
-        if (height) {
+        below = place_in_plan<E>(gather<E>(local_, lower_, e), at);
+        if (below) {
           sample.hint = e;
           break;
         }
       }
     }
-    if (!height) {
+    if (!below) {
       ++gap.skipped;
       continue;
     }
     ++gap.located;
-    const double value = point.z() - *height;
+    const double value = point.z() - below->height;
     if (value < gap.value) {
       gap.value = value;
       gap.at = frame_.transpose() * point;

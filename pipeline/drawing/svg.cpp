@@ -2,11 +2,11 @@
 #include <iterator>
 #include <map>
 #include <numbers>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include "pipeline/drawing/drawing.h"
+#include "pipeline/drawing/xml.h"
 #include "pipeline/state/whole_file.h"
 
 namespace pneuma::pipeline::drawing {
@@ -14,7 +14,6 @@ namespace pneuma::pipeline::drawing {
 namespace {
 
 constexpr double mm = 1e3;
-constexpr double capital_height = 0.72; // of the font size, in the usual sans-serif fonts
 
 // The AutoCAD colours 1 to 8 (red, yellow, green, cyan, blue, magenta, black on white, grey), dark enough for white.
 const char* colour(int index) {
@@ -22,29 +21,6 @@ const char* colour(int index) {
                                                      {5, "#0040c0"}, {6, "#b000a0"}, {8, "#707070"}};
   const auto found = colours.find(index);
   return found == colours.end() ? "#000000" : found->second;
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-    case '&':
-      result += "&amp;";
-      break;
-    case '<':
-      result += "&lt;";
-      break;
-    case '>':
-      result += "&gt;";
-      break;
-    case '"':
-      result += "&quot;";
-      break;
-    default:
-      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c; // XML 1.0 knows no control characters
-    }
-  }
-  return result;
 }
 
 // Microns; y of SVG points down.

@@ -212,8 +212,10 @@ std::string expected(const Option& option) {
     return "a plain number";
   case Type::quantity:
     return dimension_of(option.unit) + " with its unit";
-  case Type::choice:
-    return "one of: " + joined(available_names(option.members));
+  case Type::choice: {
+    const std::vector<std::string> names = available_names(option.members);
+    return (names.size() == 1 ? "" : "one of: ") + joined(names);
+  }
   case Type::list:
     return "a list [...]";
   case Type::group:
@@ -428,10 +430,10 @@ private:
         value.read_as = &kind;
         return value;
       }
-      if (kind.type == Type::choice && scalars > 1) {
+      if (kind.type == Type::choice) {
         words = names_of(kind.members);
         if (std::find(words.begin(), words.end(), node.text) == words.end()) {
-          if (node.text.find_first_of("+-.0123456789") == 0) continue;
+          if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
           break;
         }
       }

@@ -107,11 +107,19 @@ std::string fault_in_foils(const State& state) {
 
 std::string fault_in_chambers(const State& state) {
   const auto blocks = static_cast<Index>(state.mesh.blocks.size());
+  const auto chambers = static_cast<Index>(state.chambers.size());
   for (const Chamber& chamber : state.chambers) {
     for (const Index wall : {chamber.outer, chamber.inner}) {
       if (wall < 0 || wall >= blocks) {
         return fmt::format("chamber {} names block {}, but there are {}", chamber.name, wall, blocks);
       }
+    }
+    const Index other = chamber.connected_to;
+    if (other < -1 || other >= chambers) {
+      return fmt::format("chamber {} is connected to chamber {}, but there are {}", chamber.name, other, chambers);
+    }
+    if (other >= 0 && state.chambers[static_cast<std::size_t>(other)].connected_to != -1) {
+      return fmt::format("chamber {} is connected to chamber {}, which has no air of its own", chamber.name, other);
     }
     if (chamber.law > GasLaw::volume) return fmt::format("chamber {} has an unknown gas law", chamber.name);
   }

@@ -278,6 +278,7 @@ void write_chambers(const Group& group, const std::vector<Chamber>& chambers) {
   group.write("name", column(chambers, &Chamber::name));
   write_list(group, "outer", column(chambers, &Chamber::outer), "1");
   write_list(group, "inner", column(chambers, &Chamber::inner), "1");
+  write_list(group, "connected_to", column(chambers, &Chamber::connected_to), "1");
   write_list(group, "law", laws, "1");
   write_list(group, "kappa", column(chambers, &Chamber::kappa), "1");
   write_list(group, "dead_volume", column(chambers, &Chamber::dead_volume), "m3");
@@ -296,6 +297,7 @@ std::vector<Chamber> read_chambers(const Group& group) {
   };
   fill("outer", &Chamber::outer);
   fill("inner", &Chamber::inner);
+  fill("connected_to", &Chamber::connected_to);
   fill("kappa", &Chamber::kappa);
   fill("dead_volume", &Chamber::dead_volume);
   fill("gauge_pressure", &Chamber::gauge_pressure);

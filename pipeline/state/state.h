@@ -15,7 +15,7 @@ using base::Index;
 using base::Vec3;
 
 // Version of the layout below and of the file; a file of another version is refused with a message.
-inline constexpr int schema_version = 2;
+inline constexpr int schema_version = 3;
 
 // Where a state comes from. Text only: nothing here takes part in computing.
 struct Provenance {
@@ -73,6 +73,7 @@ struct Chamber {
   double ambient_pressure = 0; // Pa, absolute
   double temperature = 0;      // K
   double volume = 0;           // m3, dead volume included
+  Index connected_to = -1;     // number of the chamber whose air it shares, which is not itself connected; -1: none
 };
 
 enum class Location : std::uint8_t { point, cell, gauss };

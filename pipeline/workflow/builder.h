@@ -21,6 +21,9 @@ inline constexpr const char* all_foils = "all"; // key that stands for every foi
 base::Vec2 vec2_of(const Value& list);
 Vec3 vec3_of(const Value& list);
 
+// Of length 1; a normalised one stays as it is to the last bit: it is read again from stage.yaml.
+Vec3 unit(const Vec3& v);
+
 // Turns checked values into settings and checks what no single option can know: names, neighbours, the graph. Used by
 // read_workflow and read_stage alone.
 class Builder {
@@ -35,13 +38,12 @@ private:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
   void warn(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), false}); }
   // A key that a user gave and that cannot stand where it does: why.
-  void refuse(const Value& stage, const std::string& key, const std::string& reason);
+  void refuse(const Value& group, const std::string& key, const std::string& reason);
 
   // builder_cushion.cpp
   void read_site(const Value& site);
   Material material_of(const std::string& name, const Value& value) const;
-  // `is_used`: by a foil, or in place; a file may hold more
-  void add_material(const std::string& name, const Value& value, bool is_used);
+  void add_material(const std::string& name, const Value& value);
   void read_materials(const Value& root);
   // Names of materials that foils of the file use: a file may hold laws that are not available yet.
   static std::set<std::string> used_materials(const Value& root);
@@ -57,6 +59,9 @@ private:
   std::optional<std::size_t> wall_position(const Value& wall);
   void fail_unknown_foil(const Mark& mark, const std::string& name);
   void read_chambers(const Value& chambers);
+  void check_connection(const std::string& name, const Value& connected_to);
+  // The chamber whose air a chamber has: the one it is connected to, or itself.
+  std::string air_of(const std::string& chamber) const;
   void read_walls(const Value& between, ChamberSettings& chamber, std::map<std::size_t, std::string>& gaps);
   // Of a value and of all that lies in it.
   void copy_origin(const std::string& from, const std::string& to);
@@ -67,9 +72,16 @@ private:
   // {FOIL or all: value} for every foil.
   std::map<std::string, double> per_foil(const Value& table, const std::string& path, const std::string& key);
   void check_chamber(const Mark& mark, const std::string& name);
-  std::map<std::string, double> pressures_of(const Value& stage);
+  std::map<std::string, double> pressures_of(const Value& stage, const std::string& path);
   static SolverOptions options_of(const Value& stage);
-  static Control control_of(const Value& stage);
+  // `gas`: of the chambers in this stage; none: regulated
+  Control control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas = {});
+  DisplacementControl displacement_control(const Value& control);
+  VolumeControl volume_control(const Value& control, const std::map<std::string, Gas>& gas);
+  ArcLengthControl arc_length_control(const Value& control);
+  // The foil or chamber that a control names, or the only one.
+  std::string controlled_foil(const Value& control);
+  std::string controlled_chamber(const Value& control);
   void read_stages(const Value& stages);
   // Kind of the stage that `from` names; empty: unknown, or refused where it stands.
   static std::string kind_of(const std::string& id, const std::map<std::string, const Value*>& known);
@@ -80,7 +92,7 @@ private:
   bool in_cycle(const std::string& id, const Value& from, const std::map<std::string, const Value*>& known);
   FormfindSettings formfind_of(const Value& stage, const std::string& path);
   InflateSettings inflate_of(const Value& stage, const std::string& path, const std::string& from_run);
-  WindSettings wind_of(const Value& stage);
+  WindSettings wind_of(const Value& stage, const std::string& path);
   Gas gas_of(const Value& value);
   Load load_of(const Value& value, const Value* factors, const std::vector<Load>& before);
   void check_loaded_foil(const Value& foil, const Load& load);
@@ -101,6 +113,7 @@ private:
   bool is_stage_file_ = false;
   bool materials_known_ = true;
   bool plan_known_ = false;
+  bool connections_known_ = true; // between chambers
   std::vector<std::string> material_names_, foil_names_, chamber_names_;
   std::vector<std::pair<std::string, Mark>> material_places_; // where foils name them
 };

@@ -44,6 +44,11 @@ Vec3 vec3_of(const Value& list) {
   return {list.items.at(0).number, list.items.at(1).number, list.items.at(2).number};
 }
 
+Vec3 unit(const Vec3& v) {
+  const double norm = v.norm();
+  return std::abs(norm - 1) > 1e-14 ? Vec3(v / norm) : v;
+}
+
 Builder::Builder(std::filesystem::path file, bool is_stage_file) : is_stage_file_(is_stage_file) {
   workflow_.file = std::move(file);
 }
@@ -84,10 +89,8 @@ void Builder::read_site(const Value& site) {
   }
   if (const Value* up = site["up"]) {
     out.up = vec3_of(*up);
-    const double norm = out.up.norm();
-    if (norm == 0) return fail(up->mark, "`up` must not be zero");
-    // a normalised one stays as it is to the last bit: it is read again from stage.yaml
-    if (std::abs(norm - 1) > 1e-14) out.up /= norm;
+    if (out.up.norm() == 0) return fail(up->mark, "`up` must not be zero");
+    out.up = unit(out.up);
   }
 }
 
@@ -95,27 +98,28 @@ Material Builder::material_of(const std::string& name, const Value& value) const
   Material material;
   material.name = name;
   material.mark = value.key;
-  material.law = {number_of(value, "E"), number_of(value, "nu")};
+  if (value.text == "elastic") {
+    material.law = ElasticLaw{number_of(value, "E"), number_of(value, "nu")};
+  } else {
+    material.law = MooneyRivlinLaw{number_of(value, "C1"), number_of(value, "C2")};
+  }
+  if (const Value* tension_field = value["tension_field"]) material.tension_field = tension_field->flag;
   material.density = optional_number(value, "density");
   material.thermal_expansion = optional_number(value, "thermal_expansion");
   material.source = text_of(value, "source");
   return material;
 }
 
-void Builder::add_material(const std::string& name, const Value& value, bool is_used) {
+void Builder::add_material(const std::string& name, const Value& value) {
   material_names_.push_back(name);
-  if (!value.valid) return;
-  if (const Value* tension_field = value["tension_field"]; tension_field != nullptr && tension_field->flag && is_used) {
-    fail(tension_field->mark, "`tension_field: on` is not available yet; foils carry compression: off");
-  }
-  workflow_.materials[name] = material_of(name, value);
+  if (value.valid) workflow_.materials[name] = material_of(name, value);
 }
 
 void Builder::read_materials(const Value& root) {
   const Value* materials = root.find("materials");
   if (materials == nullptr) return;
   if (materials->read_as != nullptr && materials->read_as->type == schema::Type::table) {
-    for (const auto& [name, value] : materials->members) add_material(name, value, true);
+    for (const auto& [name, value] : materials->members) add_material(name, value);
     return;
   }
   materials_known_ = materials->valid;
@@ -157,7 +161,7 @@ void Builder::read_materials_file(const Value& path, const Value& root) {
     one.entries = {entry};
     schema::Check context{problems, workflow_.origins, used.contains(entry.key)};
     const Value table = schema::check(materials_file_options(), one, "materials", context);
-    for (const auto& [name, value] : table.members) add_material(name, value, used.contains(name));
+    for (const auto& [name, value] : table.members) add_material(name, value);
   }
 }
 
@@ -280,6 +284,7 @@ void Builder::read_chambers(const Value& chambers) {
     chamber.mark = item.mark;
     chamber.name = text_of(item, "name");
     chamber.dead_volume = number_of(item, "dead_volume");
+    chamber.connected_to = text_of(item, "connected_to");
     if (const Value* name = item["name"]) {
       if (std::find(chamber_names_.begin(), chamber_names_.end(), name->text) != chamber_names_.end()) {
         fail(name->mark, fmt::format("a second chamber `{}`: every chamber needs a name of its own", name->text));
@@ -291,6 +296,29 @@ void Builder::read_chambers(const Value& chambers) {
     }
     workflow_.cushion.chambers.push_back(std::move(chamber));
   }
+  for (const Value& item : chambers.items) {
+    if (const Value* connected_to = item["connected_to"]) check_connection(text_of(item, "name"), *connected_to);
+  }
+}
+
+void Builder::check_connection(const std::string& name, const Value& connected_to) {
+  const std::string &other = connected_to.text, next = air_of(other);
+  const bool is_known = std::find(chamber_names_.begin(), chamber_names_.end(), other) != chamber_names_.end();
+  if (is_known && other != name && next == other) return;
+  connections_known_ = false;
+  if (!is_known) return check_chamber(connected_to.mark, other);
+  if (other == name) return fail(connected_to.mark, fmt::format("`{}` cannot be connected to itself", name));
+  fail(connected_to.mark,
+       next == name ? fmt::format("`{}` is connected to `{}` in turn; say it at one of the two", other, name)
+                    : fmt::format("`{}` is itself connected to `{}`; connect both to `{}`", other, next, next));
+}
+
+std::string Builder::air_of(const std::string& chamber) const {
+  const std::vector<ChamberSettings>& chambers = workflow_.cushion.chambers;
+  const auto found =
+      std::find_if(chambers.begin(), chambers.end(), [&](const ChamberSettings& one) { return one.name == chamber; });
+  if (found == chambers.end() || found->connected_to.empty()) return chamber;
+  return found->connected_to;
 }
 
 void Builder::read_walls(const Value& between, ChamberSettings& chamber, std::map<std::size_t, std::string>& gaps) {

@@ -21,8 +21,8 @@ using schema::optional_number;
 using schema::suggestion;
 using schema::text_of;
 
-void Builder::refuse(const Value& stage, const std::string& key, const std::string& reason) {
-  const Value* value = stage.find(key);
+void Builder::refuse(const Value& group, const std::string& key, const std::string& reason) {
+  const Value* value = group.find(key);
   if (value != nullptr && value->given) fail(value->key, fmt::format("`{}` {}; leave it out", key, reason));
 }
 
@@ -108,7 +108,7 @@ void Builder::check_chamber(const Mark& mark, const std::string& name) {
                          schema::joined(chamber_names_)));
 }
 
-std::map<std::string, double> Builder::pressures_of(const Value& stage) {
+std::map<std::string, double> Builder::pressures_of(const Value& stage, const std::string& path) {
   std::map<std::string, double> out;
   const Value* table = stage.find("gauge_pressure");
   if (table == nullptr || table->read_as == nullptr) return out;
@@ -117,10 +117,25 @@ std::map<std::string, double> Builder::pressures_of(const Value& stage) {
     out[name] = value.number;
   }
   for (const std::string& name : chamber_names_) {
-    if (table->valid && table->find(name) == nullptr) {
+    const std::string air = air_of(name);
+    if (air == name && table->valid && table->find(name) == nullptr) {
+      const auto sharing = std::find_if(table->members.begin(), table->members.end(),
+                                        [&](const auto& member) { return air_of(member.first) == name; });
       fail(table->mark,
-           fmt::format("`gauge_pressure` says nothing about the chamber `{}`; 0 Pa leaves it empty", name));
+           fmt::format("`gauge_pressure` says nothing about the chamber `{}`; {}", name,
+                       sharing == table->members.end()
+                           ? "0 Pa leaves it empty"
+                           : fmt::format("`{}` is connected to it and takes its pressure", sharing->first)));
     }
+    const Value *shared = (*table)[air], *own = (*table)[name];
+    if (air == name || shared == nullptr || !connections_known_) continue;
+    if (own == nullptr) copy_origin(path + ".gauge_pressure." + air, path + ".gauge_pressure." + name);
+    // 0.4 kPa and 400 Pa may differ in the last bit
+    if (own != nullptr && std::abs(own->number - shared->number) > 1e-12 * std::abs(shared->number)) {
+      fail(own->mark, fmt::format("`{}` is connected to `{}` and has its pressure, {}, not {}; leave it out", name, air,
+                                  shared->text, own->text));
+    }
+    out[name] = shared->number;
   }
   return out;
 }
@@ -128,13 +143,109 @@ std::map<std::string, double> Builder::pressures_of(const Value& stage) {
 SolverOptions Builder::options_of(const Value& stage) {
   const Value* options = stage["options"];
   if (options == nullptr) return {};
-  return {optional_number(*options, "tolerance"), optional_integer(*options, "max_iterations")};
+  return {optional_number(*options, "tolerance"), optional_integer(*options, "max_iterations"),
+          optional_integer(*options, "max_steps")};
 }
 
-Control Builder::control_of(const Value& stage) {
+Control Builder::control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas) {
   const Value* control = stage["control"];
   if (control == nullptr) return {};
-  return {optional_integer(*control, "steps")};
+  Control out;
+  out.steps = optional_integer(*control, "steps");
+  if (control->members.empty()) copy_origin(path + ".control", path + ".control.type"); // `control: load`
+  if (control->text == "displacement") out.kind = displacement_control(*control);
+  if (control->text == "volume") out.kind = volume_control(*control, gas);
+  if (control->text == "arc_length") out.kind = arc_length_control(*control);
+  return out;
+}
+
+DisplacementControl Builder::displacement_control(const Value& control) {
+  DisplacementControl out;
+  out.foil = controlled_foil(control);
+  out.until = number_of(control, "until");
+  const Value *at = control["at"], *until = control["until"];
+  const bool is_largest = at != nullptr && at->items.empty();
+  if (at != nullptr && !is_largest) out.at = vec2_of(*at);
+  if (until != nullptr && out.until == 0) fail(until->mark, "`until` must not be zero");
+  if (until != nullptr && out.until < 0 && is_largest) {
+    fail(until->mark, fmt::format("`until` must be positive, not {}: the largest displacement (`at: max`) has no sign",
+                                  until->text));
+  }
+  if (is_largest) refuse(control, "direction", "is for a displacement at a place, not the largest (`at: max`)");
+  if (const Value* direction = control["direction"]; direction != nullptr && out.at) {
+    out.direction = vec3_of(*direction);
+    if (out.direction.norm() == 0) {
+      fail(direction->mark, "`direction` must not be zero");
+    } else {
+      out.direction = unit(out.direction);
+    }
+  }
+  return out;
+}
+
+VolumeControl Builder::volume_control(const Value& control, const std::map<std::string, Gas>& gas) {
+  VolumeControl out{controlled_chamber(control), number_of(control, "until")};
+  const std::string air = air_of(out.chamber);
+  const auto law = gas.find(air);
+  if (law == gas.end() || std::holds_alternative<RegulatedGas>(law->second)) return out;
+  const Value* chamber = control["chamber"];
+  fail(chamber != nullptr ? chamber->mark : control.mark,
+       fmt::format("the volume of `{}` cannot be controlled: its gas (`law: {}`) decides it; allowed: regulated", air,
+                   std::holds_alternative<ClosedGas>(law->second) ? "closed" : "volume"));
+  return out;
+}
+
+ArcLengthControl Builder::arc_length_control(const Value& control) {
+  ArcLengthControl out;
+  const Value* until = control["until"];
+  if (until == nullptr) return out;
+  out.load_factor = optional_number(*until, "load_factor");
+  out.pressure = optional_number(*until, "pressure");
+  out.volume = optional_number(*until, "volume");
+  out.displacement = optional_number(*until, "displacement");
+  out.after_peak = optional_number(*until, "after_peak");
+  if (out.pressure || out.volume) {
+    out.chamber = controlled_chamber(control);
+  } else {
+    refuse(control, "chamber", "is for `until: {pressure: ...}` or `{volume: ...}`");
+  }
+  if (!out.displacement) {
+    refuse(control, "foil", "is for `until: {displacement: ...}`");
+  } else if (control.find("foil") != nullptr) {
+    out.foil = controlled_foil(control);
+  }
+  return out;
+}
+
+std::string Builder::controlled_foil(const Value& control) {
+  const Value* foil = control["foil"];
+  if (foil == nullptr && foil_names_.size() == 1) return foil_names_.front();
+  if (foil_names_.empty() || (foil == nullptr && control.find("foil") != nullptr)) return "";
+  if (foil == nullptr) {
+    fail(control.mark, fmt::format("`control` lacks the key `foil`; foils: {}", schema::joined(foil_names_)));
+    return "";
+  }
+  if (std::find(foil_names_.begin(), foil_names_.end(), foil->text) == foil_names_.end()) {
+    fail_unknown_foil(foil->mark, foil->text);
+  }
+  return foil->text;
+}
+
+std::string Builder::controlled_chamber(const Value& control) {
+  std::vector<std::string> airs;
+  std::copy_if(chamber_names_.begin(), chamber_names_.end(), std::back_inserter(airs),
+               [&](const std::string& name) { return air_of(name) == name; });
+  const Value* chamber = control["chamber"];
+  if (chamber != nullptr) {
+    check_chamber(chamber->mark, chamber->text);
+    return chamber->text;
+  }
+  if (airs.size() == 1) return airs.front();
+  if (control.find("chamber") != nullptr || !connections_known_) return "";
+  fail(control.mark, airs.empty()
+                         ? "the cushion has no chamber whose air could be controlled"
+                         : fmt::format("`control` lacks the key `chamber`; chambers: {}", schema::joined(airs)));
+  return "";
 }
 
 void Builder::read_stages(const Value& stages) {
@@ -175,7 +286,7 @@ void Builder::add_stage(const std::string& id, const Value& stage, const std::ma
   } else if (out.run == "inflate") {
     out.settings = inflate_of(stage, path, out.from_run);
   } else if (out.run == "wind") {
-    out.settings = wind_of(stage);
+    out.settings = wind_of(stage, path);
   }
   workflow_.stages.push_back(std::move(out));
 }
@@ -234,7 +345,7 @@ bool Builder::in_cycle(const std::string& id, const Value& from, const std::map<
 
 FormfindSettings Builder::formfind_of(const Value& stage, const std::string& path) {
   FormfindSettings out;
-  out.gauge_pressure = pressures_of(stage);
+  out.gauge_pressure = pressures_of(stage, path);
   if (const Value* prestress = stage["prestress"]) out.prestress = per_foil(*prestress, path, "prestress");
   if (const Value* stress = stage["stress"]) {
     out.prestress = per_foil(*stress, path, "stress");
@@ -245,9 +356,9 @@ FormfindSettings Builder::formfind_of(const Value& stage, const std::string& pat
 
 InflateSettings Builder::inflate_of(const Value& stage, const std::string& path, const std::string& from_run) {
   InflateSettings out;
-  out.gauge_pressure = pressures_of(stage);
+  out.gauge_pressure = pressures_of(stage, path);
   out.contact_stops = text_of(stage, "contact") != "ignore";
-  out.control = control_of(stage);
+  out.control = control_of(stage, path);
   const Value* reference = stage.find("reference");
   const Value* prestress = stage.find("prestress");
   if (const Value* valid = stage["reference"]) {
@@ -272,17 +383,24 @@ InflateSettings Builder::inflate_of(const Value& stage, const std::string& path,
   return out;
 }
 
-WindSettings Builder::wind_of(const Value& stage) {
+WindSettings Builder::wind_of(const Value& stage, const std::string& path) {
   WindSettings out;
   out.contact_stops = text_of(stage, "contact") != "ignore";
-  out.control = control_of(stage);
-  for (const std::string& chamber : chamber_names_) out.gas[chamber] = RegulatedGas{};
+  for (const std::string& chamber : chamber_names_) {
+    if (air_of(chamber) == chamber) out.gas[chamber] = RegulatedGas{};
+  }
   if (const Value* table = stage.find("gas")) {
     for (const auto& [name, value] : table->members) {
       check_chamber(value.key, name);
-      if (value.valid) out.gas[name] = gas_of(value);
+      if (const std::string air = air_of(name); air != name && connections_known_) {
+        fail(value.key,
+             fmt::format("`{}` is connected to `{}` and has no air of its own; say the law of `{}`", name, air, air));
+      } else if (value.valid) {
+        out.gas[name] = gas_of(value);
+      }
     }
   }
+  out.control = control_of(stage, path, out.gas);
   const Value* factors = stage.find("factors");
   if (const Value* loads = stage.find("loads")) {
     for (const Value& load : loads->items) out.loads.push_back(load_of(load, factors, out.loads));

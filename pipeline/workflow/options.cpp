@@ -115,7 +115,7 @@ Option cushion() {
       {word("name", "of the chamber").required(),
        list("between", word("wall", "a foil, or base"), "the two neighbouring foils around it").items(2, 2).required(),
        quantity("dead_volume", "m3", "air in ducts").at_least(0, "at least 0 m3").otherwise("0 m3"),
-       word("connected_to", "another chamber").unavailable("every chamber has an air of its own")},
+       word("connected_to", "another chamber, whose air it shares: one pressure, the sum of the volumes")},
       "a chamber");
   return group("cushion",
                {plan().required(), table("edges", edge, "per named edge or `all`").otherwise("{}"),
@@ -149,25 +149,55 @@ Option mesh() {
       .exactly_one({"size", "divisions"});
 }
 
-Option solver_options() {
+Option solver_options(const Options& more = {}) {
   return group("options",
-               {number("tolerance", "relative residual at which an equilibrium is accepted")
-                    .within({0, 1, "between 0 and 1", false, false}),
-                integer("max_iterations", "per step").between(1, 1000000, "from 1 to 1000000")},
+               Options{number("tolerance", "relative residual at which an equilibrium is accepted")
+                           .within({0, 1, "between 0 and 1", false, false}),
+                       integer("max_iterations", "per step").between(1, 1000000, "from 1 to 1000000")} +
+                   more,
                "of the solver")
       .otherwise("{}");
 }
 
+Option path_options() {
+  return solver_options({integer("max_steps", "after so many the path is given up; without it as many as it takes")
+                             .between(1, 100000, "from 1 to 100000")});
+}
+
 Option control() {
-  const char* load = "load control is available: {type: load, steps: n}";
-  return variant(
-             "control", "type",
-             {group("load",
-                    {integer("steps", "output at n equal parts of the path").between(1, 100000, "from 1 to 100000")},
-                    "the load grows; automatic steps"),
-              group("displacement", {}, "").unavailable(load), group("volume", {}, "").unavailable(load),
-              group("arc_length", {}, "").unavailable(load)},
-             "how the path is followed")
+  const Option steps = integer("steps", "output at n equal parts of the path").between(1, 100000, "from 1 to 100000");
+  const Option chamber = word("chamber", "where there are several");
+  const Option foil = word("foil", "where there are several");
+  const Option place = either("at",
+                              {choice("largest", {value("max", "the largest displacement of the foil")}, "not a place"),
+                               point("place", "a point of the foil, in plan")},
+                              "what is controlled")
+                           .otherwise("max");
+  const Option targets = group("until",
+                               {number("load_factor", "1: everything that the stage states").positive(),
+                                quantity("pressure", "Pa", "gauge pressure of the chamber"),
+                                quantity("volume", "m3", "of the chamber").positive(),
+                                quantity("displacement", "m", "largest of the foil, or of all").positive(),
+                                number("after_peak", "the load fell to this part of its peak")
+                                    .within({0, 1, "between 0 and 1", false, false})},
+                               "the path ends at the first that is reached")
+                             .required()
+                             .at_least_one({"load_factor", "pressure", "volume", "displacement", "after_peak"});
+  const Option kinds = variant(
+      "path", "type",
+      {group("load", {steps}, "the load grows; automatic steps"),
+       group("displacement",
+             {place, foil, vector("direction", "of the displacement at a place; without it the site's up"),
+              quantity("until", "m", "the displacement in the end; its sign counts along the direction").required(),
+              steps},
+             "a displacement grows, the load follows"),
+       group("volume", {chamber, quantity("until", "m3", "the volume in the end").required().positive(), steps},
+             "the volume of a chamber changes, the load follows"),
+       group("arc_length", {targets, chamber, foil, steps},
+             "a length along the path grows, load and displacement follow")},
+      "by type");
+  return either("control", {choice("word", {value("load", "the load grows; automatic steps")}, "in a word"), kinds},
+                "how the path is followed")
       .otherwise("load");
 }
 
@@ -277,7 +307,7 @@ Option inflate() {
                                          value("stress_free", "the found form is free of stress")},
                                         "of a found form"),
                                  table("prestress", isotropic_prestress(), "of a flat start, per foil or `all`"),
-                                 contact(), control(), solver_options()},
+                                 contact(), control(), path_options()},
                "raises the pressure");
 }
 
@@ -331,7 +361,7 @@ Option wind() {
                                  table("factors", number("LOAD", "factor"), "of the loads, by name").otherwise("{}"),
                                  text("duration", "").unavailable(plain),
                                  list("history", text("point", ""), "").unavailable(plain), contact(), control(),
-                                 solver_options()},
+                                 path_options()},
                "loads the inflated cushion");
 }
 
@@ -345,21 +375,37 @@ Option stages(bool in_stage_file) {
 
 Option material() {
   const char* elastic = "the isotropic elastic law is available: {law: elastic, E: 900 MPa, nu: 0.45}";
-  const auto later = [&](const char* law) { return group(law, {}, "").unavailable(elastic); };
+  const auto law = [](const char* name, const Options& keys, const char* what) {
+    return group(
+        name,
+        keys +
+            Options{flag("tension_field", "a foil that cannot carry compression").otherwise("off"),
+                    quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
+                    quantity("thermal_expansion", "K-1", "linear"), text("source", "where the values come from"),
+                    table("strength", text("value", ""), "").unavailable("the report does not use strengths so far")},
+        what);
+  };
+  const auto later = [](const char* name) {
+    return group(name, {}, "").unavailable("elastic, mooney_rivlin and neo_hooke are available");
+  };
+  const Option C1 = quantity("C1", "Pa", "of W = C1 (I1 - 3) + C2 (I2 - 3); half the shear modulus without C2")
+                        .required()
+                        .positive()
+                        .usual(1e4, 1e9, "rubber and foils have 10 kPa to 1 GPa");
   return variant(
       "NAME", "law",
-      {group(
-           "elastic",
+      {law("elastic",
            {quantity("E", "Pa", "Young's modulus").required().positive().usual(1e6, 1e10, "foils have 1 MPa to 10 GPa"),
             number("nu", "Poisson's ratio").required().within({-1, 0.5, "above -1, up to 0.5", false, true}),
             text("E1", "").unavailable(elastic), text("E2", "").unavailable(elastic),
-            text("nu12", "").unavailable(elastic), text("G12", "").unavailable(elastic),
-            flag("tension_field", "a foil that cannot carry compression").otherwise("off"),
-            quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
-            quantity("thermal_expansion", "K-1", "linear"), text("source", "where the values come from"),
-            table("strength", text("value", ""), "").unavailable("the report does not use strengths so far")},
+            text("nu12", "").unavailable(elastic), text("G12", "").unavailable(elastic)},
            "isotropic, St. Venant-Kirchhoff"),
-       later("j2"), later("ogden"), later("mooney_rivlin"), later("neo_hooke"), later("le_nurbs"), later("pd_nurbs")},
+       law("mooney_rivlin",
+           {C1,
+            quantity("C2", "Pa", "of W").required().at_least(0, "at least 0 Pa").usual(0, 1e9, "usually up to 1 GPa")},
+           "incompressible, hyperelastic"),
+       law("neo_hooke", {C1}, "incompressible, hyperelastic: mooney_rivlin with C2 = 0"), later("j2"), later("ogden"),
+       later("le_nurbs"), later("pd_nurbs")},
       "a material");
 }
 

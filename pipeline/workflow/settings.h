@@ -39,10 +39,16 @@ struct ElasticLaw {
   double nu = 0; // -
 };
 
+// Incompressible, W = C1 (I1 - 3) + C2 (I2 - 3); neo-Hooke is C2 = 0.
+struct MooneyRivlinLaw {
+  double C1 = 0, C2 = 0; // Pa
+};
+
 // A resolved material. Laws that the schema knows and the solver does not are refused when read.
 struct Material {
   std::string name;
-  ElasticLaw law;
+  std::variant<ElasticLaw, MooneyRivlinLaw> law;
+  bool tension_field = false;              // cannot carry compression
   std::optional<double> density;           // kg/m3
   std::optional<double> thermal_expansion; // 1/K
   std::string source;
@@ -61,6 +67,7 @@ struct ChamberSettings {
   std::string name;
   std::string outer, inner; // foil names; inner may be "base"
   double dead_volume = 0;   // m3
+  std::string connected_to; // chamber whose air it shares, which is not itself connected; empty: an air of its own
   Mark mark;
 };
 
@@ -87,6 +94,7 @@ struct MeshSettings {
 struct SolverOptions {
   std::optional<double> tolerance; // relative residual
   std::optional<int> max_iterations;
+  std::optional<int> max_steps; // of inflate and wind
 };
 
 struct FormfindSettings {
@@ -94,8 +102,31 @@ struct FormfindSettings {
   std::map<std::string, double> prestress;      // foil -> N/m, every foil present (`stress` already times thickness)
 };
 
-// control {type: load}: the only one so far
+struct LoadControl {};
+
+struct DisplacementControl {
+  std::optional<base::Vec2> at; // m, in plan; none: the largest displacement of the foil
+  std::string foil;
+  Vec3 direction{0, 0, 0}; // of the controlled displacement, unit length; zero: the site's up (meaningless for max)
+  double until = 0;        // m, not zero; its sign counts along the direction
+};
+
+struct VolumeControl {
+  std::string chamber;
+  double until = 0; // m3
+};
+
+// Ends at the first of these that is reached; at least one is given.
+struct ArcLengthControl {
+  std::optional<double> load_factor, pressure, volume, displacement; // -, Pa (gauge), m3, m
+  std::optional<double> after_peak;                                  // the load fell to this part of its peak, 0 .. 1
+  std::string chamber; // of pressure and volume; filled in where there is only one; empty: neither is given
+  std::string foil;    // of displacement (largest); empty: of all foils
+};
+
+// How the path is followed.
 struct Control {
+  std::variant<LoadControl, DisplacementControl, VolumeControl, ArcLengthControl> kind;
   std::optional<int> steps; // output at n equal parts of the path; none: automatic steps
 };
 
@@ -182,7 +213,7 @@ struct Load {
 };
 
 struct WindSettings {
-  std::map<std::string, Gas> gas; // chamber -> law, every chamber present
+  std::map<std::string, Gas> gas; // chamber -> law, every chamber present that is not connected to another
   std::vector<Load> loads;
   bool contact_stops = true;
   Control control;

@@ -35,6 +35,12 @@ Node quantity(double value, const char* unit) {
   return scalar(quantity_text(value, unit));
 }
 
+Node components(const Vec3& v) {
+  Node node = empty_list();
+  for (int i = 0; i < 3; ++i) node.items.push_back(plain(v[i]));
+  return node;
+}
+
 Node lengths(double a, double b) {
   Node node = empty_list();
   node.items = {quantity(a, "m"), quantity(b, "m")};
@@ -51,18 +57,24 @@ Node site_node(const Site& site) {
   Node node = empty_map();
   add(node, "ambient_pressure", quantity(site.ambient_pressure.pascal, "Pa"));
   add(node, "temperature", quantity(site.temperature, "K"));
-  Node up = empty_list();
-  for (int i = 0; i < 3; ++i) up.items.push_back(plain(site.up[i]));
-  add(node, "up", up);
+  add(node, "up", components(site.up));
   add(node, "gravity", scalar(site.gravity ? "on" : "off"));
   return node;
 }
 
 Node material_node(const Material& material) {
   Node node = empty_map();
-  add(node, "law", scalar("elastic"));
-  add(node, "E", quantity(material.law.E, "Pa"));
-  add(node, "nu", plain(material.law.nu));
+  if (const auto* elastic = std::get_if<ElasticLaw>(&material.law)) {
+    add(node, "law", scalar("elastic"));
+    add(node, "E", quantity(elastic->E, "Pa"));
+    add(node, "nu", plain(elastic->nu));
+  } else {
+    const auto& mooney_rivlin = std::get<MooneyRivlinLaw>(material.law);
+    add(node, "law", scalar("mooney_rivlin"));
+    add(node, "C1", quantity(mooney_rivlin.C1, "Pa"));
+    add(node, "C2", quantity(mooney_rivlin.C2, "Pa"));
+  }
+  add(node, "tension_field", scalar(material.tension_field ? "on" : "off"));
   if (material.density) add(node, "density", quantity(*material.density, "kg/m3"));
   if (material.thermal_expansion) add(node, "thermal_expansion", quantity(*material.thermal_expansion, "K-1"));
   if (!material.source.empty()) add(node, "source", scalar(material.source));
@@ -114,6 +126,7 @@ Node cushion_node(const Cushion& cushion) {
     between.items = {scalar(chamber.outer), scalar(chamber.inner)};
     add(item, "between", between);
     add(item, "dead_volume", quantity(chamber.dead_volume, "m3"));
+    if (!chamber.connected_to.empty()) add(item, "connected_to", scalar(chamber.connected_to));
     chambers.items.push_back(item);
   }
   add(node, "chambers", chambers);
@@ -138,10 +151,41 @@ Node mesh_node(const MeshSettings& mesh) {
   return node;
 }
 
+void add_control(Node& path, const LoadControl&) {
+  add(path, "type", scalar("load"));
+}
+
+void add_control(Node& path, const DisplacementControl& control) {
+  add(path, "type", scalar("displacement"));
+  add(path, "at", control.at ? lengths(control.at->x(), control.at->y()) : scalar("max"));
+  add(path, "foil", scalar(control.foil));
+  if (control.direction.norm() > 0) add(path, "direction", components(control.direction));
+  add(path, "until", quantity(control.until, "m"));
+}
+
+void add_control(Node& path, const VolumeControl& control) {
+  add(path, "type", scalar("volume"));
+  add(path, "chamber", scalar(control.chamber));
+  add(path, "until", quantity(control.until, "m3"));
+}
+
+void add_control(Node& path, const ArcLengthControl& control) {
+  add(path, "type", scalar("arc_length"));
+  Node until = empty_map();
+  if (control.load_factor) add(until, "load_factor", plain(*control.load_factor));
+  if (control.pressure) add(until, "pressure", quantity(*control.pressure, "Pa"));
+  if (control.volume) add(until, "volume", quantity(*control.volume, "m3"));
+  if (control.displacement) add(until, "displacement", quantity(*control.displacement, "m"));
+  if (control.after_peak) add(until, "after_peak", plain(*control.after_peak));
+  add(path, "until", until);
+  if (!control.chamber.empty()) add(path, "chamber", scalar(control.chamber));
+  if (!control.foil.empty()) add(path, "foil", scalar(control.foil));
+}
+
 void add_path(Node& node, bool contact_stops, const Control& control) {
   add(node, "contact", scalar(contact_stops ? "stop" : "ignore"));
   Node path = empty_map();
-  add(path, "type", scalar("load"));
+  std::visit([&](const auto& kind) { add_control(path, kind); }, control.kind);
   if (control.steps) add(path, "steps", plain(*control.steps));
   add(node, "control", path);
 }
@@ -297,6 +341,7 @@ Node stage_node(const StageSettings& stage) {
   Node options = empty_map();
   if (stage.options.tolerance) add(options, "tolerance", plain(*stage.options.tolerance));
   if (stage.options.max_iterations) add(options, "max_iterations", plain(*stage.options.max_iterations));
+  if (stage.options.max_steps) add(options, "max_steps", plain(*stage.options.max_steps));
   add(node, "options", options);
   return node;
 }

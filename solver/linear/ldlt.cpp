@@ -16,6 +16,8 @@ constexpr int ordering = 7, scaling = 8, usual_ordering = 12, workspace_percent 
 constexpr int info = 1, negative = 12, null = 28;
 constexpr int smallest_pivot = 19, largest_pivot = 21;
 constexpr int amd = 0, pord = 4;
+constexpr int null_threshold = 3;
+constexpr double noise = 1e-13; // of the matrix' norm: a smaller pivot is none
 // MUMPS keeps its load balance in variables of the whole process: two instances at once break each other
 std::mutex one_at_a_time; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
@@ -36,10 +38,11 @@ struct Ldlt::Workspace {
     dmumps_c(&mumps);
     for (const int printing : {1, 2, 3}) setting(printing) = -1;
     setting(4) = 0;
-    setting(scaling) = 0;     // it would blow up rows that are zero but for rounding
+    setting(scaling) = 0; // it would blow up rows that are zero but for rounding
     setting(usual_ordering) = 1;
     setting(workspace_percent) = 30;
     setting(find_null_pivots) = 1;
+    mumps.cntl[null_threshold - 1] = noise;
   }
   ~Workspace() {
     const std::scoped_lock lock(one_at_a_time);

@@ -10,10 +10,9 @@ namespace pneuma::solver::path {
 
 namespace {
 
-constexpr double cut = 4;               // a failed step is made so much shorter
-constexpr double wanted_iterations = 4; // of a step
-constexpr double longest_arc = 4;       // of the first one
-constexpr int most_bifurcations = 10;   // that are located on a path
+constexpr double cut = 4;                // a failed step is made so much shorter
+constexpr double wanted_iterations = 4;  // of a step
+constexpr int most_critical_points = 20; // beyond, bifurcations are not located
 
 Configuration between(const Configuration& a, const Configuration& b, double part) {
   Configuration c = a;
@@ -42,9 +41,11 @@ public:
     start_ = way_value();
     length_ = options_.first_step * std::abs(until() - start_);
     look();
+    count_ = count_ahead_;
     while (result_.end == PathEnd::stuck && result_.reason.empty()) {
       if (result_.steps >= options_.max_steps) {
-        result_.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options_.max_steps, at_.load_factor);
+        result_.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options_.max_steps,
+                                     at_.load_factor);
       } else if (way_) {
         walk();
       } else {
@@ -90,11 +91,11 @@ private:
     std::optional<Change> way = tangent.along(at_);
     if (!way) return;
     count_ahead_ = tangent.count(at_, nullptr).load_held;
-    way_ = oriented(std::move(*way));
+    way_ = oriented(*way);
   }
 
   // Along the last step; at first towards more load (arc length) or towards the goal.
-  Change oriented(Change way) {
+  Change oriented(const Change& way) {
     double sign = way.load_factor;
     if (last_) {
       sign = dot_u(way, *last_);
@@ -136,9 +137,10 @@ private:
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
-        } else {
-          take(*goal, std::move(next), outcome.iterations);
+        } else if (take(*goal, next, outcome.iterations)) {
           return;
+        } else {
+          reason = "the path bends too much";
         }
       }
       system_.evaluate(at_, true);
@@ -162,7 +164,7 @@ private:
         first_arc_ = options_.first_step / rate * root_mean_square(system_, *way_);
         if (length_ == 0) length_ = first_arc_;
       }
-      return Goal{HeldArc{at_.positions}, 0, std::min(length_, longest_arc * first_arc_), true};
+      return Goal{HeldArc{at_.positions}, 0, length_, true};
     }
     Goal goal{held_quantity(), way_value(), 0, false};
     const Row row = row_of(goal.held, goal.from, system_, at_);
@@ -197,6 +199,7 @@ private:
   // Without a tangent (flat, slack) a step of load control, short enough not to pass the first goal.
   void step_by_load() {
     double step = options_.first_step * (last_ && last_->load_factor < 0 ? -1 : 1);
+    bool away = false;
     for (int tries = 0; tries < 16; ++tries, step /= cut) {
       Configuration next = at_;
       next.load_factor += step;
@@ -207,20 +210,23 @@ private:
       if (!is_arc()) {
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;
+        away = away || !forward;
         if (!forward || std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
           continue;
       }
       last_ = difference(at_, next);
       at_ = std::move(next);
       look();
+      count_ = count_ahead_;
+      rate_.reset();
       if (is_arc()) length_ = first_arc_ = root_mean_square(system_, *last_);
       accept(outcome.iterations, is_arc());
       return;
     }
     system_.evaluate(at_, true);
-    result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: the cushion has no stiffness, and no "
-                                 "small part of the load gives it one",
-                                 at_.load_factor);
+    result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor,
+                                 away ? "the load moves the controlled quantity away from its goal"
+                                      : "the cushion has no stiffness, and no small part of the load gives it one");
   }
 
   Held held_quantity_at(const Configuration& next) const {
@@ -231,39 +237,85 @@ private:
     return held_quantity();
   }
 
-  // A step was found: first what lies between, then the step itself.
-  void take(const Goal& goal, Configuration next, int iterations) {
+  // Whether the cubic through load and rate at both ends of a step turns twice between them: too long a step, which
+  // would pass two limit points unseen.
+  static bool turns_twice(double change, double length, double rate, double rate_next) {
+    if (rate * rate_next <= 0) return false;
+    constexpr int samples = 16;
+    for (int i = 1; i < samples; ++i) {
+      const double t = static_cast<double>(i) / samples;
+      const double slope =
+          rate * (1 - 4 * t + 3 * t * t) + rate_next * (3 * t * t - 2 * t) + 6 * change / length * t * (1 - t);
+      if (slope * rate < 0) return true;
+    }
+    return false;
+  }
+
+  // A step was found: first what lies between, then the step itself. False: it is too long.
+  bool take(const Goal& goal, const Configuration& next, int iterations) {
     const Configuration from = at_;
     const double rate = rate_.value_or(way_->load_factor);
     const std::optional<int> count = count_;
+    const std::optional<Change> way_before = way_, last_before = last_;
     last_ = difference(from, next);
     at_ = next;
     look();
+    const double length = std::sqrt(dot_u(*last_, *last_));
+    const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
+    if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
+        (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
+      at_ = from;
+      way_ = way_before;
+      last_ = last_before;
+      return false;
+    }
     if (way_ && rate * way_->load_factor < 0) {
       const double beyond = way_->load_factor;
       const std::optional<int> count_beyond = count_ahead_;
       if (locate_limit(goal, from, next, rate, beyond)) {
         rate_ = beyond;
         if (count && count_beyond) count_ = *count + (*count_beyond > *count ? 1 : -1);
-        return;
+        if (end_between(from)) {
+          finish(iterations);
+        } else {
+          result_.critical.push_back({CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1});
+          accept(0, false);
+        }
+        return true;
       }
-      at_ = next;
-      system_.evaluate(at_, true);
-      look();
-    } else if (way_ && count && count_ahead_ && *count != *count_ahead_ && !options_.only_looking) {
-      const int beyond = *count_ahead_;
-      locate_bifurcation(goal, from, next, *count, beyond);
-      at_ = next;
-      system_.evaluate(at_, true);
-      look();
+      stand_at(from, next);
+    }
+    const bool ends = end_between(from);
+    if (way_ && count && count_ahead_ && *count != *count_ahead_ && !options_.only_looking) {
+      const Configuration end = at_;
+      Goal way = goal;
+      if (is_arc()) way.to = value_of(goal.held, system_, at_);
+      locate_bifurcations(way, from, end, *count, *count_ahead_);
+      stand_at(from, end);
     }
     rate_ = way_ ? std::optional<double>(way_->load_factor) : std::nullopt;
     count_ = count_ahead_;
-    if (is_arc() && ends_between(from)) return;
+    if (ends) {
+      finish(iterations);
+      return true;
+    }
     grow(goal, iterations);
     accept(iterations, goal.end_of_part);
-    if (result_.end == PathEnd::stopped) return;
+    if (result_.end == PathEnd::stopped) return true;
     if (!is_arc() && goal.end_of_part && ++part_ > options_.parts) result_.end = PathEnd::reached;
+    return true;
+  }
+
+  void stand_at(const Configuration& from, const Configuration& at) {
+    at_ = at;
+    system_.evaluate(at_, true);
+    last_ = difference(from, at_);
+    look();
+  }
+
+  void finish(int iterations) {
+    accept(iterations, true);
+    if (result_.end != PathEnd::stopped) result_.end = PathEnd::reached;
   }
 
   void grow(const Goal& goal, int iterations) {
@@ -318,69 +370,83 @@ private:
         f_low /= 2;
       }
     }
-    result_.critical.push_back({CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1});
-    accept(0, false);
     return true;
   }
 
-  void locate_bifurcation(const Goal& goal, const Configuration& from, const Configuration& next, int count,
-                          int beyond) {
-    if (static_cast<int>(result_.critical.size()) >= most_bifurcations || std::abs(beyond - count) > 3) return;
-    double low = 0, high = 1;
-    Configuration at = next;
-    for (int i = 0; i < 14; ++i) { // to 1e-4 of the step
-      const double part = 0.5 * (low + high);
-      std::optional<Configuration> c = state_between(goal, from, next, part);
-      if (!c) return;
-      at_ = std::move(*c);
-      last_ = difference(from, at_);
-      look();
-      if (!count_ahead_) break; // singular here: this is the place
-      (*count_ahead_ == count ? low : high) = part;
-      at = at_;
+  // The places where the count of negative eigenvalues changes, each by bisection to 1e-4 of the step.
+  void locate_bifurcations(const Goal& goal, const Configuration& from, const Configuration& next, int count,
+                           int beyond) {
+    if (std::abs(beyond - count) > 3) return; // wrinkles: as many as the mesh has
+    double start = 0;
+    while (count != beyond && static_cast<int>(result_.critical.size()) < most_critical_points) {
+      double low = start, high = 1;
+      int count_high = beyond;
+      Configuration at = next;
+      for (int i = 0; i < 14; ++i) {
+        const double part = 0.5 * (low + high);
+        std::optional<Configuration> c = state_between(goal, from, next, part);
+        if (!c) return;
+        at_ = std::move(*c);
+        last_ = difference(from, at_);
+        look();
+        if (count_ahead_ && *count_ahead_ == count) {
+          low = part;
+          continue;
+        }
+        high = part; // or singular: this is the place
+        at = at_;
+        if (count_ahead_) count_high = *count_ahead_;
+      }
+      result_.critical.push_back({CriticalPoint::Kind::bifurcation, at.load_factor, at.pressures, result_.steps + 1});
+      count = count_high;
+      start = high;
     }
-    last_ = difference(from, next);
-    result_.critical.push_back({CriticalPoint::Kind::bifurcation, at.load_factor, at.pressures, result_.steps + 1});
   }
 
-  // Arc length: whether a goal lies between `from` and the new state; then the path ends exactly there.
-  bool ends_between(const Configuration& from) {
-    const ArcLengthPath& arc = std::get<ArcLengthPath>(control_);
-    const auto try_end = [&](const std::optional<double>& goal, const Held& held) {
-      if (!goal) return false;
-      const Configuration now = at_;
-      Configuration before = from;
-      const bool needs_volume = std::holds_alternative<HeldVolume>(held);
-      if (needs_volume) system_.evaluate(before, true);
-      const double a = value_of(held, system_, before);
-      if (needs_volume) system_.evaluate(at_, true);
-      const double b = value_of(held, system_, at_);
-      if ((a - *goal) * (b - *goal) > 0 || a == b || a == *goal) return false;
-      Configuration c = between(from, now, (*goal - a) / (b - a));
-      const Newton::Outcome outcome = newton_.solve(c, held, *goal, options_.max_iterations, {});
-      if (outcome.converged) {
-        at_ = std::move(c);
-      } else {
-        system_.evaluate(at_, true); // it was passed: good enough as an end
-      }
-      accept(outcome.iterations, true);
-      if (result_.end != PathEnd::stopped) result_.end = PathEnd::reached;
-      return true;
-    };
+  // Arc length: whether a goal lies between `from` and the new state; then the first one becomes the new state.
+  bool end_between(const Configuration& from) {
+    const auto* arc = std::get_if<ArcLengthPath>(&control_);
+    if (arc == nullptr) return false;
     std::optional<double> fallen;
-    if (arc.after_peak) {
+    if (arc->after_peak) {
       for (const CriticalPoint& point : result_.critical) {
         if (point.kind == CriticalPoint::Kind::limit && (!fallen || std::abs(point.load_factor) > std::abs(*fallen))) {
           fallen = point.load_factor;
         }
       }
-      if (fallen) *fallen *= *arc.after_peak;
+      if (fallen) *fallen *= *arc->after_peak;
     }
-    const Farthest far = farthest(system_, arc.block, at_);
+    const Farthest far = farthest(system_, arc->block, at_);
     const Vec3 direction = far.move.norm() > 0 ? far.move.normalized() : Vec3(0, 0, 1);
-    return try_end(arc.load_factor, HeldLoadFactor{}) || try_end(fallen, HeldLoadFactor{}) ||
-           try_end(arc.pressure, HeldPressure{arc.chamber}) || try_end(arc.volume, HeldVolume{arc.chamber}) ||
-           try_end(arc.displacement, displacement_of(far.node, direction));
+    const std::pair<std::optional<double>, Held> goals[] = {{arc->load_factor, HeldLoadFactor{}},
+                                                            {fallen, HeldLoadFactor{}},
+                                                            {arc->pressure, HeldPressure{arc->chamber}},
+                                                            {arc->volume, HeldVolume{arc->chamber}},
+                                                            {arc->displacement, displacement_of(far.node, direction)}};
+    double nearest = 2; // part of the step
+    std::size_t which = 0;
+    Configuration before = from;
+    for (std::size_t i = 0; i < std::size(goals); ++i) {
+      const auto& [goal, held] = goals[i];
+      if (!goal) continue;
+      const bool needs_volume = std::holds_alternative<HeldVolume>(held);
+      if (needs_volume) system_.evaluate(before, true);
+      const double a = value_of(held, system_, before);
+      if (needs_volume) system_.evaluate(at_, true);
+      const double b = value_of(held, system_, at_);
+      if (a == b || a == *goal || (a - *goal) * (b - *goal) > 0) continue;
+      const double part = (*goal - a) / (b - a);
+      if (part < nearest) {
+        nearest = part;
+        which = i;
+      }
+    }
+    if (nearest > 1) return false;
+    Configuration end = between(from, at_, nearest);
+    const auto& [goal, held] = goals[which];
+    // not found: it was passed, good enough as an end
+    stand_at(from, newton_.solve(end, held, *goal, options_.max_iterations, {}).converged ? end : Configuration(at_));
+    return true;
   }
 
   System& system_;

@@ -17,6 +17,7 @@ std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const C
   ControlledPathOptions options;
   options.first_step = reach;
   options.max_steps = 12;
+  options.smallest_step = 1e-2; // a look, not a search
   options.only_looking = true;
   ArcLengthPath arc;
   arc.load_factor = from.load_factor + 2 * reach;
@@ -70,7 +71,8 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
   while (part_number <= options.parts) {
     if (result.steps == options.max_steps) {
       system.evaluate(configuration, true);
-      result.reason = fmt::format("the {} steps ran out at load factor {:.6g}", options.max_steps, result.load_factor);
+      result.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options.max_steps,
+                                  result.load_factor);
       return result;
     }
     const double goal = part_number == options.parts ? 1.0 : part * part_number;
@@ -82,6 +84,10 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
     });
+    if (outcome.converged && turned_over(system, configuration, trial)) {
+      outcome.converged = false;
+      outcome.reason = "an element would be turned over";
+    }
     if (!outcome.converged) {
       const double reach = trial.load_factor - result.load_factor;
       length = reach / 4;

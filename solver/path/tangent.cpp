@@ -16,7 +16,8 @@ namespace {
 
 constexpr double shift_growth = 4;
 constexpr int max_shift_tries = 40;
-constexpr double whole_step = 0.9; // of the line search
+constexpr double no_stiffness = 1e-12; // smallest over largest pivot
+constexpr double whole_step = 0.9;     // of the line search
 constexpr double short_step = 0.3;
 
 double now() {
@@ -174,7 +175,10 @@ bool Tangent::factorize(const Configuration& configuration, Repair repair) {
       return;
     }
     ++count[i];
-    if (factor.cholesky.factorize(foil.pattern, foil.tangent)) return;
+    if (factor.cholesky.factorize(foil.pattern, foil.tangent)) {
+      // a flat foil's few strains from rounding are no stiffness: LDLt counts the null space
+      if (repair == Repair::descent || factor.cholesky.pivot_ratio() > no_stiffness) return;
+    }
     if (repair == Repair::indefinite || !laws_.empty()) {
       ++count[i];
       factorize_indefinite(i, foil.tangent);
@@ -382,7 +386,7 @@ bool Tangent::factorize_whole(const Configuration& configuration, const Change& 
   }
   values.push_back(0.0);
   ++work_.factorizations;
-  return whole_->factorize(whole_pattern_, values);
+  return whole_->factorize(whole_pattern_, values) && whole_->pivot_ratio() > no_stiffness;
 }
 
 // Right sides with the load factor's line in `load_factor`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/common/equilibrium.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 
@@ -12,6 +13,7 @@
 #include "geometry/surface.h"
 #include "pipeline/state/state_file.h"
 #include "solver/recovery/reactions.h"
+#include "stages/common/path_control.h"
 #include "stages/common/summary.h"
 
 namespace pneuma::stages::common {
@@ -89,18 +91,7 @@ public:
     for (std::size_t i = 0; i < drive_.state.chambers.size(); ++i) {
       c.pressures[static_cast<Eigen::Index>(i)] = drive_.state.chambers[i].gauge_pressure;
     }
-    path::LoadPathOptions options;
-    options.parts = drive_.steps.value_or(1);
-    const path::PathResult result = path::follow_load(
-        system_, newton_, c, options,
-        [&](const path::Step& step, const assembly::Configuration& at) { return accept(step, at); },
-        [&](int step, const path::Iteration& i) {
-          progress_.show(fmt::format("step {}, load factor {:.4g}, iteration {}: residual {:.2e}{}", step,
-                                     i.load_factor, i.number + 1, i.residual,
-                                     i.shift > 0 ? fmt::format(", artificial tension {:.2g} N/m", i.shift) : ""));
-          artificial_tension_ = std::max(artificial_tension_, i.shift);
-          stop_if_interrupted();
-        });
+    const path::PathResult result = follow(c);
     progress_.done();
     finish(c, result);
   }
@@ -114,7 +105,38 @@ private:
     return options;
   }
 
+  path::PathResult follow(assembly::Configuration& c) {
+    const path::Accept accepted = [&](const path::Step& step, const assembly::Configuration& at) {
+      return accept(step, at);
+    };
+    const path::Report report = [&](int step, const path::Iteration& i) {
+      progress_.show(fmt::format("step {}, load factor {:.4g}, iteration {}: residual {:.2e}{}", step, i.load_factor,
+                                 i.number + 1, i.residual,
+                                 i.shift > 0 ? fmt::format(", artificial tension {:.2g} N/m", i.shift) : ""));
+      artificial_tension_ = std::max(artificial_tension_, i.shift);
+      stop_if_interrupted();
+    };
+    const int parts = drive_.control.steps.value_or(1);
+    const pipeline::workflow::SolverOptions& given = start_.stage().options;
+    if (const std::optional<path::PathControl> control = path_control(start_, drive_.control)) {
+      path::ControlledPathOptions options;
+      options.parts = parts;
+      if (parts > 1 && std::holds_alternative<path::ArcLengthPath>(*control)) options.first_step = 1.0 / parts;
+      if (given.max_steps) options.max_steps = *given.max_steps;
+      if (given.max_iterations) options.max_iterations = *given.max_iterations;
+      return path::follow_control(system_, newton_, c, *control, options, accepted, report);
+    }
+    path::LoadPathOptions options;
+    options.parts = parts;
+    if (given.max_steps) options.max_steps = *given.max_steps;
+    return path::follow_load(system_, newton_, c, options, accepted, report);
+  }
+
   path::Verdict accept(const path::Step& step, const assembly::Configuration& c) {
+    if (std::abs(step.load_factor) > std::abs(largest_load_)) {
+      largest_load_ = step.load_factor;
+      largest_load_step_ = step.number;
+    }
     progress_.done();
     std::string line =
         fmt::format("step {}: load factor {:.6g}, {} iterations", step.number, step.load_factor, step.iterations);
@@ -133,7 +155,7 @@ private:
     }
     const std::vector<FoilResults> foils = results(c);
     write_history(step, c, foils);
-    if (drive_.steps && step.end_of_part) {
+    if (drive_.control.steps && step.end_of_part) {
       const Clock clock;
       State state = make_state(c, foils);
       state.provenance.converged = true;
@@ -178,7 +200,8 @@ private:
     state.fields.clear();
     for (std::size_t i = 0; i < state.chambers.size(); ++i) {
       pipeline::state::Chamber& chamber = state.chambers[i];
-      const assembly::Chamber& model = system_.model().chambers[i];
+      const auto air = static_cast<std::size_t>(system_.air_of(static_cast<Index>(i)));
+      const assembly::Chamber& model = system_.model().chambers[air];
       chamber.law = law_kind(model.gas);
       if (const auto* closed = std::get_if<solver::chamber::Closed>(&model.gas)) {
         chamber.kappa = closed->kappa;
@@ -193,9 +216,52 @@ private:
     return state;
   }
 
+  void summarize_path(const path::PathResult& result, Summary& summary) const {
+    bool has_limit = false;
+    for (std::size_t i = 0; i < result.critical.size(); ++i) {
+      const path::CriticalPoint& point = result.critical[i];
+      const bool is_limit = point.kind == path::CriticalPoint::Kind::limit;
+      has_limit = has_limit || is_limit;
+      const std::string key = fmt::format("critical_points.#{}.", i);
+      summary.set(key + "kind", is_limit ? "limit point" : "bifurcation point");
+      summary.set(key + "load_factor", point.load_factor);
+      summary.set(key + "step", point.step);
+      for (std::size_t k = 0; k < drive_.state.chambers.size(); ++k) {
+        summary.set(key + "chambers." + drive_.state.chambers[k].name + ".gauge_pressure",
+                    point.pressures[static_cast<Eigen::Index>(k)]);
+      }
+      base::say(fmt::format("{} point at load factor {:.6g}, step {}", is_limit ? "limit" : "bifurcation",
+                            point.load_factor, point.step));
+    }
+    if (!has_limit) return;
+    summary.set("peak.quantity", drive_.load_name);
+    summary.set("peak.value", drive_.load_at_one * largest_load_);
+    summary.set("peak.step", largest_load_step_);
+  }
+
+  // What acts on a foil and what the frame answers, N: pressures, and the dead loads at its free nodes (those at held
+  // nodes reach the frame without it).
+  void summarize_balance(const FoilResults& r, Summary& summary) const {
+    for (const assembly::FoilEquations& foil : system_.foils()) {
+      if (foil.block != r.block) continue;
+      Vec3 load = Vec3::Zero(), frame = Vec3::Zero();
+      for (Eigen::Index k = 0; k < foil.external.size(); ++k) {
+        load[k % 3] += foil.external[k];
+        if (system_.model().fixed[static_cast<std::size_t>(k)] != 0)
+          frame[k % 3] += foil.internal[k] - foil.external[k];
+      }
+      const std::string key = "foils." + r.name + ".balance.";
+      summary.set(key + "load", load);
+      summary.set(key + "frame", frame);
+      summary.set(key + "error", (load + frame).norm());
+    }
+  }
+
   void finish(assembly::Configuration& c, const path::PathResult& path_result) {
     system_.evaluate(c, true);
-    const path::Stability stability = newton_.tangent().stability(c, nullptr);
+    const std::optional<path::Row> held =
+        path_result.held ? std::optional(path::row_of(*path_result.held, 0, system_, c)) : std::nullopt;
+    const path::Stability stability = newton_.tangent().stability(c, held ? &*held : nullptr);
     const std::vector<FoilResults> foils = results(c);
     const bool reached = path_result.end == path::PathEnd::reached;
     const std::string verdict = reached                                     ? "converged"
@@ -226,8 +292,10 @@ private:
       summary.set(key + "volume", chamber.volume);
       summary.set(key + "law", law_name(chamber.law));
     }
+    summarize_path(path_result, summary);
     for (const FoilResults& r : foils) {
       summarize(r, summary);
+      summarize_balance(r, summary);
       if (r.compressed_area > 1e-3) {
         const std::string warning =
             fmt::format("{:.1f} % of foil `{}` is in compression, up to {} MPa: a real foil wrinkles there",
@@ -252,6 +320,13 @@ private:
         summary.set(key, "undetermined");
       }
     };
+    if (stability.load_held.value_or(0) > 0) {
+      const std::string warning =
+          fmt::format("the end state is in equilibrium but not stable where the load is held: {} negative eigenvalue{}",
+                      *stability.load_held, *stability.load_held == 1 ? "" : "s");
+      base::warn(warning);
+      summary.append("warnings", warning);
+    }
     count("stability.load_held", stability.load_held);
     count("stability.control_held", stability.control_held);
     summarize_mesh(state, summary);
@@ -288,13 +363,23 @@ private:
   base::Progress progress_;
   std::optional<std::string> contact_found_;
   double artificial_tension_ = 0; // N/m, largest in any tangent on the way
+  double largest_load_ = 0;       // load factor
+  int largest_load_step_ = 0;
   double io_ = 0;
 };
 
 } // namespace
 
 solver::material::Law law_of(const pipeline::workflow::Material& material) {
-  return solver::material::StVenantKirchhoff{material.law.E, material.law.nu};
+  namespace law = solver::material;
+  const auto with_tension_field = [&]<class L>(const L& base) {
+    return material.tension_field ? law::Law(law::TensionField<L>{base}) : law::Law(base);
+  };
+  if (const auto* rubber = std::get_if<pipeline::workflow::MooneyRivlinLaw>(&material.law)) {
+    return with_tension_field(law::MooneyRivlin{rubber->C1, rubber->C2});
+  }
+  const auto& elastic = std::get<pipeline::workflow::ElasticLaw>(material.law);
+  return with_tension_field(law::StVenantKirchhoff{elastic.E, elastic.nu});
 }
 
 assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to) {
@@ -328,7 +413,7 @@ assembly::Model make_model(const Start& start, const State& state, double weight
   for (const pipeline::state::Chamber& chamber : state.chambers) {
     model.chambers.push_back({chamber.name, chamber.outer, chamber.inner, chamber.dead_volume,
                               solver::chamber::Regulated{chamber.gauge_pressure, chamber.gauge_pressure},
-                              chamber.ambient_pressure});
+                              chamber.ambient_pressure, chamber.connected_to});
   }
   model.face_pressure.assign(state.mesh.blocks.size(), assembly::Ramp{});
   return model;
@@ -339,9 +424,16 @@ int run_equilibrium(const Start& start, Drive drive) {
   drive.modelled.insert(drive.modelled.begin(), {"large deformation of membranes without bending stiffness",
                                                  "pressure that follows the foils, with its load stiffness"});
   drive.modelled.push_back(workflow.site.gravity ? "weight of the foils" : "no weight of the foils (gravity: off)");
+  if (std::any_of(drive.model.foils.begin(), drive.model.foils.end(),
+                  [](const auto& foil) { return foil && !solver::material::has_tension_field(foil->law); })) {
+    drive.not_modelled.emplace_back("wrinkling (no tension field): compressed areas carry compression");
+  }
+  if (std::any_of(drive.model.foils.begin(), drive.model.foils.end(),
+                  [](const auto& foil) { return foil && solver::material::has_tension_field(foil->law); })) {
+    drive.modelled.emplace_back("wrinkling by a tension field: foils carry no compression");
+  }
   drive.not_modelled.insert(drive.not_modelled.end(),
-                            {"wrinkling (no tension field): compressed areas carry compression",
-                             "yield, creep and tear of the foil: the law is elastic", "contact forces between foils",
+                            {"yield, creep and tear of the foil: the law is elastic", "contact forces between foils",
                              "dynamics", "flexibility of the frame"});
   solver::linear::use_one_blas_thread();
   Run(start, std::move(drive)).run();

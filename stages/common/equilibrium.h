@@ -25,8 +25,10 @@ struct Drive {
   solver::assembly::Model model;
   State state; // what the new state takes over: mesh, foils, supports, chambers
   bool contact_stops = true;
-  std::optional<int> steps;          // output at so many equal parts
-  double temperature_to = 0;         // K, 0: as in the state
+  pipeline::workflow::Control control;
+  // The load in a unit of its own, where the stage has one: what it is called and its value at load factor 1, SI.
+  std::string load_name = "load_factor";
+  double load_at_one = 1;
   std::vector<std::string> modelled; // for the summary, beside what all such stages model
   std::vector<std::string> not_modelled;
   // what the stage itself has to say of the end state

@@ -45,7 +45,7 @@ int run(int argc, char** argv) {
   common::Drive drive;
   drive.state = start.state;
   drive.contact_stops = settings.contact_stops;
-  drive.steps = settings.control.steps;
+  drive.control = settings.control;
 
   const bool from_form = start.stage().from_run == "formfind";
   const bool from_strips = start.stage().from_run == "pattern";
@@ -76,6 +76,14 @@ int run(int argc, char** argv) {
     if (!prestressed && !from_strips) chamber.gauge_pressure = 0; // without stress nothing holds a pressure yet
     drive.model.chambers[c].gas =
         solver::chamber::Regulated{chamber.gauge_pressure, settings.gauge_pressure.at(chamber.name)};
+  }
+  if (!settings.gauge_pressure.empty()) { // the first chamber's pressure stands for the load
+    const double reached = settings.gauge_pressure.at(drive.state.chambers.front().name);
+    const auto& ramp = std::get<solver::chamber::Regulated>(drive.model.chambers.front().gas);
+    if (ramp.gauge_from == 0 && reached != 0) {
+      drive.load_name = "gauge_pressure";
+      drive.load_at_one = reached;
+    }
   }
   drive.modelled.emplace_back("regulated air");
   if (from_strips) {

@@ -79,6 +79,9 @@ common::State make_state(const common::Start& start) {
     data.volume = chamber.dead_volume; // the foils lie on each other
     data.ambient_pressure = w.site.ambient_pressure.pascal;
     data.temperature = w.site.temperature;
+    for (std::size_t other = 0; other < w.cushion.chambers.size(); ++other) {
+      if (w.cushion.chambers[other].name == chamber.connected_to) data.connected_to = static_cast<Index>(other);
+    }
     state.chambers.push_back(data);
   }
   state.provenance = common::provenance(start);

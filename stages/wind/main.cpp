@@ -77,12 +77,14 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
   }
 }
 
-solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, std::string& text) {
+// `volume`: of the air now, that of connected chambers included, m3.
+solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Chamber& chamber, double volume,
+                            std::string& text) {
   if (const auto* closed = std::get_if<workflow::ClosedGas>(&gas)) {
     solver::chamber::Closed law;
     law.kappa = closed->kappa;
     law.absolute0 = chamber.gauge_pressure + chamber.ambient_pressure;
-    law.volume0 = chamber.volume;
+    law.volume0 = volume;
     law.temperature0 = chamber.temperature;
     law.temperature = closed->temperature.value_or(chamber.temperature);
     law.ambient_from = chamber.ambient_pressure;
@@ -96,9 +98,9 @@ solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Cha
     }
     return law;
   }
-  if (const auto* volume = std::get_if<workflow::VolumeGas>(&gas)) {
+  if (const auto* prescribed = std::get_if<workflow::VolumeGas>(&gas)) {
     text = fmt::format("chamber {}: prescribed volume", chamber.name);
-    return solver::chamber::PrescribedVolume{chamber.volume, volume->volume};
+    return solver::chamber::PrescribedVolume{volume, prescribed->volume};
   }
   text = fmt::format("chamber {}: regulated air", chamber.name);
   const auto& regulated = std::get<workflow::RegulatedGas>(gas);
@@ -112,11 +114,21 @@ int run(int argc, char** argv) {
   common::Drive drive;
   drive.state = start.state;
   drive.contact_stops = settings.contact_stops;
-  drive.steps = settings.control.steps;
+  drive.control = settings.control;
   drive.model = common::make_model(start, drive.state, 1, 1);
-  for (std::size_t c = 0; c < drive.state.chambers.size(); ++c) {
+  const std::vector<pipeline::state::Chamber>& chambers = drive.state.chambers;
+  for (std::size_t c = 0; c < chambers.size(); ++c) {
     std::string text;
-    drive.model.chambers[c].gas = gas_of(settings.gas.at(drive.state.chambers[c].name), drive.state.chambers[c], text);
+    if (chambers[c].connected_to >= 0) {
+      text = fmt::format("chamber {}: one air with {}", chambers[c].name,
+                         chambers[static_cast<std::size_t>(chambers[c].connected_to)].name);
+    } else {
+      double volume = chambers[c].volume;
+      for (const pipeline::state::Chamber& other : chambers) {
+        if (other.connected_to == static_cast<Index>(c)) volume += other.volume;
+      }
+      drive.model.chambers[c].gas = gas_of(settings.gas.at(chambers[c].name), chambers[c], volume, text);
+    }
     drive.modelled.push_back(text);
   }
   for (const workflow::Load& load : settings.loads) {
@@ -124,6 +136,19 @@ int run(int argc, char** argv) {
     constexpr const char* kinds[] = {"wind as a pressure that follows the foil", "snow as a dead load on the plan",
                                      "patch as a dead load on the plan"};
     drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
+  }
+  if (settings.loads.size() == 1) { // then the load has a name and a unit of its own
+    const workflow::Load& load = settings.loads.front();
+    if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
+      drive.load_name = "wind";
+      drive.load_at_one = load.factor * wind->pressure;
+    } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
+      drive.load_name = "snow";
+      drive.load_at_one = load.factor * snow->weight;
+    } else {
+      drive.load_name = "patch";
+      drive.load_at_one = load.factor * std::get<workflow::PatchLoad>(load.kind).force.norm();
+    }
   }
   if (start.arguments.check) return 0;
   return common::run_equilibrium(start, std::move(drive));

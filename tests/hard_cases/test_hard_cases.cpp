@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "solver/analytical/circular_membrane.h"
+#include "solver/path/controlled_path.h"
 #include "tests/unit/solver/cushions.h"
 
 namespace {
@@ -326,6 +327,50 @@ TEST(HardCases, CushionPushedInsideOutStandsOnTheOtherSide) {
   model.face_pressure = {{0, 300}, {0, 0}};
   Solved up(model);
   EXPECT_NEAR(-s.lowest(0), up.highest(0), 1e-5 * up.highest(0));
+}
+
+TEST(HardCases, FreeDomePushedDownByItsMiddleStopsWithAReasonAndTheLastGoodState) {
+  // a foil free of stress cannot carry compression at all: as soon as it is pushed it wrinkles, as finely as the mesh
+  // can. There is no path to follow; the control must end where it finds none, in equilibrium.
+  Cushion c = large();
+  c.heights = {0.4};
+  c.base = true;
+  assembly::Model model = model_of(c, 0);
+  model.face_pressure = {{0, -300}, {0, 0}};
+  assembly::System system(model, 1);
+  path::Newton newton(system, {});
+  assembly::Configuration at = tests::start_of(model);
+  Index middle = -1;
+  for (std::size_t i = 0; i < at.positions.size(); ++i) {
+    if (std::abs(at.positions[i].z() - 0.4) < 1e-9) middle = static_cast<Index>(i);
+  }
+  ASSERT_GE(middle, 0);
+  const path::PathResult result = path::follow_control(
+      system, newton, at, path::DisplacementPath{path::displacement_of(middle, Vec3(0, 0, -1)), 0.8}, {}, {},
+      tests::tell);
+  std::printf("| free dome pushed down | %s | %d | %d | %d |\n", result.reason.c_str(), result.steps,
+              newton.work().iterations, newton.work().factorizations);
+  EXPECT_EQ(result.end, path::PathEnd::stuck);
+  EXPECT_NE(result.reason.find("no equilibrium found beyond load factor"), std::string::npos) << result.reason;
+  const assembly::Balance balance = system.evaluate(at, true);
+  EXPECT_LT(balance.residual, 1e-9 * balance.force_scale + balance.rounding);
+}
+
+TEST(HardCases, AirPressedIntoAHundredthOfItsVolume) {
+  // the thesis' gas law (gauge pressure, ambient 0): 300 Pa inside, 30 kPa on both faces
+  Cushion c = large();
+  Solved from(pressed(c, 300));
+  ASSERT_TRUE(from.converged());
+  assembly::Model model = model_of(c, 300);
+  model.chambers[0].gas = tests::closed_now(from, 0, 0);
+  model.face_pressure = {{0, -30e3}, {0, 30e3}};
+  Solved s(model, from.at);
+  record("air pressed into a hundredth", s);
+  ASSERT_TRUE(s.converged()) << s.path.reason;
+  EXPECT_GT(s.system.chamber_volume(0), 0);
+  EXPECT_NEAR(s.at.pressures[0] * s.system.chamber_volume(0), 300 * from.system.chamber_volume(0),
+              1e-8 * 300 * from.system.chamber_volume(0));
+  EXPECT_NEAR(s.at.pressures[0], 30e3, 3e3); // the foils are slack: the air carries it all but for their stretch
 }
 
 TEST(HardCases, ImpossibleGasStopsWithAReasonNotWithNumbers) {

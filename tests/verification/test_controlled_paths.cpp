@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "solver/analytical/balloon.h"
 #include "solver/path/controlled_path.h"
 #include "tests/unit/solver/cushions.h"
 
@@ -197,6 +198,206 @@ TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
   EXPECT_LT(lowest, -0.1);
   EXPECT_NEAR(-top, pyramid.pressure(lowest), 1e-7 * top);
   EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, 0);
+}
+
+// --- a spherical balloon, one octant by symmetry
+// ----------------------------------------------------------------------------
+
+constexpr double radius = 0.1, film = 1e-3, shear = 0.4e6; // m, m, Pa
+
+// A triangle of the plan onto the octant; the planes of symmetry hold their normal direction. Load factor 1: 1 kPa.
+assembly::Model balloon(ElementType element, int divisions, const material::Law& law) {
+  const double high = std::sqrt(0.75);
+  const geometry::Triangle plan{{{0, 0}, {1, 0}, {0.5, high}}};
+  assembly::Model model;
+  model.mesh = geometry::meshing::stack(
+      geometry::meshing::mesh_plan(plan, {element, {}, std::array{divisions, divisions}}), {{"octant"}});
+  for (Vec3& x : model.mesh.nodes) {
+    const double w = x.y() / high;
+    const double v = x.x() - 0.5 * w;
+    x = radius * Vec3(1 - v - w, v, w).normalized();
+    for (int c = 0; c < 3; ++c) model.fixed.push_back(std::abs(x[c]) < 1e-9 * radius ? 1 : 0);
+  }
+  model.mesh.blocks.push_back({"nothing", geometry::BlockKind::base, {}}); // the planes are the other walls
+  model.foils.push_back(assembly::Foil{
+      element::make_reference(element, geometry::StressRule::full,
+                              element::corner_coordinates(model.mesh.blocks[0].connectivity, model.mesh.nodes),
+                              Vec3(0.3, 0.5, 0.1)),
+      law, film});
+  model.foils.emplace_back();
+  model.chambers.push_back({"inside", 0, 1, 0.0, chamber::Regulated{0, 1000}, 0.0});
+  model.origin = Vec3::Zero();
+  return model;
+}
+
+analytical::Balloon exact_of(const material::MooneyRivlin& law) {
+  return {analytical::BalloonShape::sphere, radius, film, analytical::MooneyRivlin{law.c1, law.c2}};
+}
+
+double stretch_of(double octant) {
+  return std::cbrt(octant * 6 / std::numbers::pi) / radius;
+}
+
+struct Blown {
+  assembly::System system;
+  path::Newton newton;
+  assembly::Configuration at;
+  path::PathResult path;
+  std::vector<std::pair<double, double>> points; // stretch, pressure
+
+  Blown(assembly::Model model, const path::PathControl& control, path::ControlledPathOptions options = {})
+      : system(std::move(model), 1), newton(system, {}), at(tests::start_of(system.model())) {
+    path = path::follow_control(
+        system, newton, at, control, options,
+        [&](const path::Step&, const assembly::Configuration& c) {
+          points.emplace_back(stretch_of(system.chamber_volume(0)), c.pressures[0]);
+          return path::Verdict::go_on;
+        },
+        tests::tell);
+  }
+};
+
+std::vector<double> limits_of(const path::PathResult& path) {
+  std::vector<double> limits;
+  for (const path::CriticalPoint& point : path.critical) {
+    if (point.kind == path::CriticalPoint::Kind::limit) limits.push_back(point.pressures[0]);
+  }
+  return limits;
+}
+
+TEST(Balloon, NeoHookeanSpherePassesItsLimitPointByEveryControl) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = analytical::limit_points(exact_of(law)).at(0).pressure;
+  double last_error = 1;
+  for (const int divisions : {4, 8}) {
+    path::ArcLengthPath arc;
+    arc.displacement = 2 * radius;
+    const Blown a(balloon(ElementType::T6, divisions, law), arc);
+    const Blown v(balloon(ElementType::T6, divisions, law), path::VolumePath{0, 27 * std::numbers::pi / 6 * 1e-3});
+    const Blown d(balloon(ElementType::T6, divisions, law), path::LargestDisplacementPath{0, 2 * radius});
+    for (const Blown* b : {&a, &v, &d}) {
+      ASSERT_EQ(b->path.end, path::PathEnd::reached) << b->path.reason;
+      const std::vector<double> limits = limits_of(b->path);
+      ASSERT_EQ(limits.size(), 1u);
+      EXPECT_NEAR(limits[0], limits_of(a.path)[0], 1e-8 * exact); // the mesh's limit point, whatever the control
+      double worst = 0;
+      for (const auto& [s, p] : b->points)
+        worst = std::max(worst, std::abs(p - analytical::inflate(exact_of(law), s)->pressure) / exact);
+      EXPECT_LT(worst, 0.02 / divisions);
+      std::printf("T6 %d: limit %.6f Pa (exact %.6f), worst %.1e of it on the way, %d steps, %d iterations, %d "
+                  "factorisations, %zu critical points\n",
+                  divisions, limits[0], exact, worst, b->path.steps, b->newton.work().iterations,
+                  b->newton.work().factorizations, b->path.critical.size());
+    }
+    const double error = std::abs(limits_of(a.path)[0] / exact - 1);
+    EXPECT_LT(error, last_error / 8); // third order or better
+    last_error = error;
+  }
+  EXPECT_LT(last_error, 1e-4);
+}
+
+TEST(Balloon, MooneyRivlinSphereFallsAndRisesAgain) {
+  const material::MooneyRivlin law{0.45 * shear, 0.05 * shear};
+  const std::vector<analytical::InflatedBalloon> exact = analytical::limit_points(exact_of(law));
+  ASSERT_EQ(exact.size(), 2u);
+  const double most = exact[0].pressure, least = exact[1].pressure;
+  path::ArcLengthPath arc;
+  arc.pressure = 1.2 * most; // on the rising branch far out
+  const Blown b(balloon(ElementType::T6, 8, law), arc);
+  ASSERT_EQ(b.path.end, path::PathEnd::reached) << b.path.reason;
+  const std::vector<double> limits = limits_of(b.path);
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_NEAR(limits[0], most, 1e-4 * most);
+  EXPECT_NEAR(limits[1], least, 1e-4 * most);
+  EXPECT_NEAR(b.points.back().second, 1.2 * most, 1e-9 * most);
+  std::printf("Mooney-Rivlin: %.6f, %.6f Pa (exact %.6f, %.6f), last stretch %.3f\n", limits[0], limits[1], most, least,
+              b.points.back().first);
+}
+
+TEST(Balloon, PressureControlStopsAtTheLimitPointAndNamesIt) {
+  const material::MooneyRivlin law{shear / 2, 0};
+  const double exact = analytical::limit_points(exact_of(law)).at(0).pressure;
+  assembly::Model model = balloon(ElementType::T6, 8, law);
+  model.chambers[0].gas = chamber::Regulated{0, 2 * exact};
+  for (const int parts : {1, 20}) {
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    path::LoadPathOptions options;
+    options.parts = parts;
+    const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
+    std::printf("%s (%d iterations, %d factorisations)\n", result.reason.c_str(), newton.work().iterations,
+                newton.work().factorizations);
+    ASSERT_EQ(result.end, path::PathEnd::stuck);
+    ASSERT_EQ(result.critical.size(), 1u);
+    EXPECT_NEAR(result.critical[0].pressures[0], exact, 1e-4 * exact);
+    EXPECT_NE(result.reason.find("limit point at load factor 0.5"), std::string::npos) << result.reason;
+    EXPECT_NEAR(result.load_factor, 0.5, 1e-3);
+    EXPECT_LE(result.load_factor, 0.5 + 1e-4);
+  }
+}
+
+// A square sheet of Mooney-Rivlin rubber pulled with equal dead forces along both sides: up to a stretch it stays
+// square, beyond it could as well become oblong (Kearsley 1986, Int. J. Solids Structures 22, 111). With W of the
+// stretches,
+//   W11 = W12:  C1 (1 + s^-6) = C2 (s^2 - 3 s^-4),  traction 2 C1 (s - s^-5) + 2 C2 (s^3 - s^-3).
+TEST(ControlledPath, BifurcationOfAnEquallyPulledSheetIsFoundAndNamed) {
+  const material::MooneyRivlin law{0.2e6, 0.1e6};
+  double low = 1.2, high = 2;
+  for (int i = 0; i < 60; ++i) {
+    const double s = 0.5 * (low + high);
+    (law.c1 * (1 + std::pow(s, -6)) > law.c2 * (s * s - 3 * std::pow(s, -4)) ? low : high) = s;
+  }
+  const auto traction = [&](double s) {
+    return 2 * law.c1 * (s - std::pow(s, -5)) + 2 * law.c2 * (s * s * s - std::pow(s, -3));
+  };
+  const double side = 0.5;
+  for (const ElementType element : {ElementType::Q4, ElementType::T3, ElementType::T6}) {
+    assembly::Model model;
+    model.mesh = geometry::meshing::stack(
+        geometry::meshing::mesh_plan(geometry::Rectangle{side, side}, {element, {}, std::array{2, 2}}), {{"quarter"}});
+    const std::size_t nodes = model.mesh.nodes.size();
+    model.dead_to = VecX::Zero(static_cast<Eigen::Index>(3 * nodes));
+    for (Vec3& x : model.mesh.nodes) x += Vec3(side / 2, side / 2, 0);
+    for (const geometry::Edge& edge : model.mesh.edges) {
+      if (edge.name != "east" && edge.name != "north") continue;
+      const std::vector<double> weights = geometry::is_quadratic(element) ? std::vector{1.0 / 6, 4.0 / 6, 1.0 / 6}
+                                                                          : std::vector{0.5, 0.5}; // of one side
+      const std::size_t along = weights.size() - 1;
+      for (std::size_t k = 0; k + along < edge.nodes.size(); k += along) {
+        for (std::size_t a = 0; a <= along; ++a) {
+          model.dead_to[3 * edge.nodes[k + a] + (edge.name == "east" ? 0 : 1)] += weights[a] * film * side / 2;
+        }
+      }
+    }
+    for (const Vec3& x : model.mesh.nodes) {
+      for (int c = 0; c < 3; ++c) model.fixed.push_back(c == 2 || std::abs(x[c]) < 1e-9 ? 1 : 0);
+    }
+    model.foils.push_back(assembly::Foil{
+        element::make_reference(element, geometry::StressRule::full,
+                                element::corner_coordinates(model.mesh.blocks[0].connectivity, model.mesh.nodes),
+                                Vec3(1, 0, 0)),
+        law, film});
+    model.dead_to *= traction(2); // load factor 1
+
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    path::ArcLengthPath arc;
+    arc.load_factor = 0.6;
+    const path::PathResult result = path::follow_control(system, newton, at, arc, {}, {}, tests::tell);
+    ASSERT_EQ(result.end, path::PathEnd::reached) << result.reason;
+    ASSERT_GE(result.critical.size(), 1u) << name_of(element); // the mesh has others, where it becomes uneven
+    EXPECT_EQ(result.critical[0].kind, path::CriticalPoint::Kind::bifurcation);
+    const double exact = traction(0.5 * (low + high)) / traction(2);
+    EXPECT_NEAR(result.critical[0].load_factor, exact, 1e-4 * exact); // bisected to 1e-4 of a step
+    std::printf("%s: bifurcation at load factor %.6f (exact %.6f), stretch %.4f\n", name_of(element),
+                result.critical[0].load_factor, exact, low);
+    // it stayed square, which is not stable any more
+    EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, static_cast<int>(result.critical.size()));
+    const Vec3 corner = path::farthest(system, -1, at).move;
+    EXPECT_NEAR(corner.x(), corner.y(), 1e-7 * side);
+  }
 }
 
 } // namespace

@@ -122,21 +122,112 @@ TEST(SmallSlope, FichtersSeriesNeedsAboutTwentyTermsAt400Kilopascal) {
   EXPECT_LT(std::abs(cut->deflection / whole - 1), 1e-3);
 }
 
+// Fichter's theory with the squares of displacement in the strains, as thesis 5.3.5 wants it: over t = ln(r / a),
+// x = u / r and the tension N,
+//   dN/dt = N_h - N - (p r)^2 / (2 N),  dx/dt = u' - x,  w' = -p r / (2 N),
+// N_h = nu N + E h e_h, e_h = x (+ x^2 / 2) and e_r = u' (+ u'^2 / 2) + w'^2 / 2.
+struct FiniteStrain {
+  bool in_hoop = true, in_radial = true; // the squares
+  CircularMembrane m;
+  double pressure = 0;
+
+  struct State {
+    double x = 0, tension = 0, depth = 0, volume = 0;
+  };
+  double hoop_strain(double x) const { return x + (in_hoop ? x * x / 2 : 0); }
+  State derivative(double t, const State& s) const {
+    const double r = m.radius * std::exp(t);
+    const double hoop = m.poissons_ratio * s.tension + m.stiffness * hoop_strain(s.x);
+    const double slope = pressure * r / (2 * s.tension);
+    const double stretch = (s.tension - m.poissons_ratio * hoop) / m.stiffness - slope * slope / 2; // u' (+ u'^2 / 2)
+    const double du = in_radial ? std::sqrt(1 + 2 * stretch) - 1 : stretch;
+    return {du - s.x, hoop - s.tension - std::pow(pressure * r, 2) / (2 * s.tension), slope * r,
+            std::numbers::pi * r * r * slope * r};
+  }
+  State at_rim(double pole) const {
+    constexpr int steps = 1500;
+    constexpr double start = -12, h = -start / steps;
+    State s{pole, m.stiffness * hoop_strain(pole) / (1 - m.poissons_ratio), 0, 0};
+    const auto plus = [](const State& a, double f, const State& b) {
+      return State{a.x + f * b.x, a.tension + f * b.tension, a.depth + f * b.depth, a.volume + f * b.volume};
+    };
+    for (int i = 0; i < steps; ++i) {
+      const double t = start + i * h;
+      const State k1 = derivative(t, s);
+      const State k2 = derivative(t + h / 2, plus(s, h / 2, k1));
+      const State k3 = derivative(t + h / 2, plus(s, h / 2, k2));
+      const State k4 = derivative(t + h, plus(s, h, k3));
+      s = plus(plus(plus(plus(s, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4);
+    }
+    return s;
+  }
+  SmallSlopeSolution solve() const {
+    double low = 0.01, high = 1; // of x at the pole; x at the rim grows with it
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (low + high);
+      (at_rim(middle).x > 0 ? high : low) = middle;
+    }
+    const State rim = at_rim(low);
+    SmallSlopeSolution solution;
+    solution.deflection = rim.depth;
+    solution.volume = rim.volume;
+    solution.apex_tension = m.stiffness * hoop_strain(low) / (1 - m.poissons_ratio);
+    return solution;
+  }
+};
+
+TEST(SmallSlope, FiniteStrainTheoryWithoutItsSquaresIsFichters) {
+  const SmallSlopeSolution series = small_slope(Theory::fichter, membrane(), 400 * kPa).value();
+  const SmallSlopeSolution shot = FiniteStrain{false, false, membrane(), 400 * kPa}.solve();
+  // to the pole's patch of exp(-12) and the steps
+  EXPECT_NEAR(shot.deflection, series.deflection, 1e-8 * series.deflection);
+  EXPECT_NEAR(shot.volume, series.volume, 1e-8 * series.volume);
+  EXPECT_NEAR(shot.apex_tension, series.apex_tension, 1e-8 * series.apex_tension);
+}
+
+TEST(SmallSlope, TheSquareInTheRadialStrainAloneHasNoRegularPole) {
+  // there N = N_h asks for e_r = e_h = x, but then u' = sqrt(1 + 2 x) - 1 differs from x = u / r, and u / r never
+  // settles; thesis 5-80 at the pole says the same: its first term leaves (1 - nu)^2 q^2 n0^2 / 2 = 0
+  const double pole = 0.1;
+  for (const auto& [in_hoop, drift] : {std::pair{false, std::sqrt(1 + 2 * pole) - 1 - pole}, std::pair{true, 0.0}}) {
+    const FiniteStrain theory{in_hoop, true, membrane(), 400 * kPa};
+    const double tension = membrane().stiffness * theory.hoop_strain(pole) / (1 - membrane().poissons_ratio);
+    EXPECT_NEAR(theory.derivative(-30, {pole, tension, 0, 0}).x, drift, 1e-15);
+  }
+}
+
+TEST(SmallSlope, SquaresInBothStrainsMoveFichtersTheoryAwayFromTheExactSolution) {
+  for (const double pressure : {100 * kPa, 250 * kPa, 400 * kPa}) {
+    const double exact = inflate(membrane(), pressure, 1500)->deflection;
+    const double fichter = small_slope(Theory::fichter, membrane(), pressure)->deflection / exact - 1;
+    const double squares = FiniteStrain{true, true, membrane(), pressure}.solve().deflection / exact - 1;
+    EXPECT_LT(squares, fichter); // both are too low
+  }
+}
+
+void print_errors(const SmallSlopeSolution& s, const InflatedCircle& exact) {
+  std::printf(" %.1f, %.1f, %.1f |", 100 * (s.deflection / exact.deflection - 1), 100 * (s.volume / exact.volume - 1),
+              100 * (s.apex_tension / exact.apex_tension - 1));
+}
+
 TEST(SmallSlope, TableOfErrorsAgainstTheExactSolution) {
-  std::printf("N0, kN/m | p, kPa | exact deflection, mm, volume, l | error of deflection, volume, %%: Hencky/Campbell, "
-              "Fichter\n");
+  std::printf("| N0, kN/m | p, kPa | exact: deflection, volume, apex tension | Hencky / Campbell, %% | Fichter / "
+              "modified, %% | with squares (5.3.5), %% |\n|---|---|---|---|---|---|\n");
   for (const double pretension : {0.0, 1e3, 10e3}) {
     for (const double pressure : {100 * kPa, 250 * kPa, 400 * kPa}) {
       const InflatedCircle exact = inflate(membrane(pretension), pressure, 1500).value();
-      std::printf("| %2.0f | %3.0f | %8.4f %8.5f |", pretension / kPa, pressure / kPa, 1e3 * exact.deflection,
-                  1e3 * exact.volume);
+      std::printf("| %.0f | %.0f | %.4f mm, %.5f l, %.3f kN/m |", pretension / kPa, pressure / kPa,
+                  1e3 * exact.deflection, 1e3 * exact.volume, 1e-3 * exact.apex_tension);
       for (const Theory theory : {Theory::campbell, Theory::modified_fichter}) {
         const auto s = small_slope(theory, membrane(pretension), pressure);
         ASSERT_TRUE(s);
-        const double deflection = 100 * (s->deflection / exact.deflection - 1);
-        const double volume = 100 * (s->volume / exact.volume - 1);
-        std::printf(" %6.2f %6.2f |", deflection, volume);
-        EXPECT_LT(std::abs(deflection), 12);
+        print_errors(*s, exact);
+        EXPECT_LT(std::abs(s->deflection / exact.deflection - 1), 0.05);
+      }
+      if (pretension == 0) {
+        print_errors(FiniteStrain{true, true, membrane(), pressure}.solve(), exact);
+      } else {
+        std::printf(" |");
       }
       std::printf("\n");
     }

@@ -191,6 +191,70 @@ stages:
   EXPECT_NEAR(summary("held")["chambers"]["main"]["volume"].get<double>(), 1.5e-3, 1e-10);
 }
 
+// A skin of rubber over a rigid base, flat and without stress, with more stages.
+std::string balloon(const std::string& more, const std::string& tension_field = "off") {
+  return R"(pneuma: 1
+name: Balloon
+materials: {rubber: {law: neo_hooke, C1: 200 kPa, tension_field: )" +
+         tension_field + R"(}}
+site: {gravity: off}
+cushion:
+  plan: {shape: circle, radius: 0.1 m}
+  foils: [{name: skin, material: rubber, thickness: 1 mm}]
+  base: rigid
+  chambers: [{name: main, between: [skin, base]}]
+mesh: {element: T6, divisions: 4}
+stages:
+)" + more;
+}
+
+std::string inflated_by(const std::string& name, const std::string& control) {
+  return "  " + name + ": {run: inflate, from: mesh, gauge_pressure: {main: 1 kPa}, control: " + control + "}\n";
+}
+
+TEST_F(Stages, ControlsEndWhereTheyAreTold) {
+  for (const std::string tension_field : {"off", "on"}) {
+    SCOPED_TRACE(tension_field);
+    write(balloon(inflated_by("place", "{type: displacement, at: [0 m, 0 m], until: 3 cm, steps: 3}") +
+                      inflated_by("largest", "{type: displacement, until: 3 cm}") +
+                      inflated_by("volume", "{type: volume, until: 1 l}") +
+                      inflated_by("pressure", "{type: arc_length, until: {pressure: 3 kPa, volume: 1 m3}}") +
+                      inflated_by("peak", "{type: arc_length, until: {after_peak: 0.9}}"),
+                  tension_field));
+    const Outcome run = pneuma("run w.yaml");
+    ASSERT_EQ(run.code, 0) << run.text;
+    EXPECT_NEAR(summary("place")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
+    EXPECT_NEAR(summary("largest")["foils"]["skin"]["max_deflection"].get<double>(), 0.03, 1e-9);
+    EXPECT_EQ(json::parse(std::ifstream(out("place") / "steps.hdf.series"))["files"].size(), 3U);
+    EXPECT_NEAR(summary("volume")["chambers"]["main"]["volume"].get<double>(), 1e-3, 1e-12);
+    EXPECT_NEAR(summary("pressure")["chambers"]["main"]["gauge_pressure"].get<double>(), 3000, 1e-3);
+    // the load is 1 kPa times the load factor; past the limit point a held pressure would not stay
+    const json peak = summary("peak");
+    EXPECT_EQ(peak["peak"]["quantity"], "gauge_pressure");
+    EXPECT_NEAR(peak["load_factor"].get<double>(), 0.9 * peak["peak"]["value"].get<double>() / 1000, 1e-6);
+    EXPECT_EQ(peak["stability"]["load_held"], 1);
+  }
+}
+
+TEST_F(Stages, ControlledPointThatCannotMoveIsRefusedAtItsPlace) {
+  write(balloon(inflated_by("far", "{type: displacement, at: [1 m, 0 m], until: 3 cm}") +
+                inflated_by("rim", "{type: displacement, at: [0.1 m, 0 m], until: 3 cm}")));
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.text, HasSubstr("w.yaml:12:101: the point (1, 0) m of the control does not lie on foil `skin`"));
+  EXPECT_THAT(run.text, HasSubstr("w.yaml:13:101: the point (0.1, 0) m of the control lies on the clamped edge"));
+}
+
+TEST_F(Stages, StepsThatRunOutEndWithFiveAndTheLastGoodState) {
+  std::string few = inflated_by("few", "{type: volume, until: 1 l}");
+  few.insert(few.find(", control"), ", options: {max_steps: 2}");
+  write(balloon(few));
+  EXPECT_EQ(pneuma("run w.yaml").code, 5);
+  EXPECT_FALSE(summary("few")["converged"].get<bool>());
+  EXPECT_EQ(summary("few")["steps"], 2);
+  EXPECT_GT(pipeline::state::read_state(out("few") / "state.hdf").chambers[0].volume, 0);
+}
+
 TEST_F(Stages, EquilateralTriangleGoesThroughTheWholeChain) {
   std::string text = cushion("T6", "  gust: {run: wind, from: inflated, gas: {main: {law: closed}}, loads: [{name: s, "
                                    "foil: lower, wind: 0.2 kPa}]}\n");

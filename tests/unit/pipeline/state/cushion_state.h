@@ -116,7 +116,7 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
     }
     state.foils.push_back(foil);
   }
-  state.chambers = {{"main", 0, 1, 0.05, GasLaw::closed, 1.4, 400.0, 101325.0, 296.15, 9.5}};
+  state.chambers = {{"main", 0, 1, 0.05, GasLaw::closed, 1.4, 400.0, 101325.0, 296.15, 9.5, -1}};
   std::vector<double> displacement;
   for (const Vec3& node : mesh.nodes) displacement.insert(displacement.end(), {0.01 * node.x(), 0, 0.1 * node.z()});
   std::vector<double> stress;

@@ -76,6 +76,7 @@ inline void expect_same(const pipeline::state::State& a, const pipeline::state::
     EXPECT_EQ(p.outer, q.outer);
     EXPECT_EQ(p.inner, q.inner);
     EXPECT_EQ(p.law, q.law);
+    EXPECT_EQ(p.connected_to, q.connected_to);
     EXPECT_TRUE(same_bits(p.dead_volume, q.dead_volume));
     EXPECT_TRUE(same_bits(p.kappa, q.kappa));
     EXPECT_TRUE(same_bits(p.gauge_pressure, q.gauge_pressure));

@@ -54,6 +54,16 @@ TEST_P(StateOfEachElement, GivesEqualBytesWhenWrittenAgain) {
   EXPECT_EQ(bytes_of(folder / "a.hdf"), bytes_of(folder / "b.hdf"));
 }
 
+TEST(StateFile, KeepsWhichChambersAreConnected) {
+  const TemporaryFolder folder;
+  State state = cushion_state(ElementType::T3, 3, 2);
+  state.chambers.push_back(state.chambers[0]);
+  state.chambers[1].name = "second";
+  state.chambers[1].connected_to = 0;
+  write_state(state, folder / "a.hdf");
+  expect_same(read_state(folder / "a.hdf"), state);
+}
+
 INSTANTIATE_TEST_SUITE_P(StateFile, StateOfEachElement,
                          testing::Values(ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9),
                          [](const auto& test) { return std::string(geometry::name_of(test.param)); });
@@ -238,6 +248,12 @@ const Wrong wrong_states[] = {
     {"TakenName", [](State& s) { s.fields[1].name = "foil"; }, "written by the state itself"},
     {"NoUnit", [](State& s) { s.fields[0].unit = ""; }, "has no unit"},
     {"ChamberWithoutWall", [](State& s) { s.chambers[0].inner = 2; }, "chamber main names block 2"},
+    {"ChamberConnectedToNone", [](State& s) { s.chambers[0].connected_to = 1; },
+     "chamber main is connected to chamber 1, but there are 1"},
+    {"ChamberConnectedToLessThanNone", [](State& s) { s.chambers[0].connected_to = -2; },
+     "chamber main is connected to chamber -2, but there are 1"},
+    {"ChamberConnectedToItself", [](State& s) { s.chambers[0].connected_to = 0; },
+     "chamber main is connected to chamber 0, which has no air of its own"},
     {"ReducedRule", [](State& s) { s.stress_rule = geometry::StressRule::reduced; }, "exists for Q9"},
     {"NulInText", [](State& s) { s.provenance.verdict = std::string("a\0b", 3); }, "NUL"},
 };

@@ -137,10 +137,25 @@ const Bad cases[] = {
      "between: [middle, lower]}",
      "between: [middle, lower]}\n    - {name: @top, between: [lower, base]}\n  base: rigid",
      {"a second chamber `top`: every chamber needs a name of its own"}},
-    {"ConnectedChambers",
-     "between: [upper, middle]}",
-     "between: [upper, middle], @connected_to: bottom}",
-     {"`connected_to` is not available yet"}},
+    {"ConnectedToItself",
+     "between: [middle, lower]}",
+     "between: [middle, lower], connected_to: @bottom}",
+     {"`bottom` cannot be connected to itself"}},
+    {"ConnectedToAnUnknownChamber",
+     "between: [middle, lower]}",
+     "between: [middle, lower], connected_to: @tpo}",
+     {"there is no chamber `tpo`; did you mean `top`?; chambers: top, bottom"}},
+    {"ConnectedToAConnectedChamber",
+     "between: [middle, lower]}",
+     "between: [middle, lower], connected_to: top}\n    - {name: third, between: [lower, base], connected_to: "
+     "@bottom}\n  base: rigid",
+     {"`bottom` is itself connected to `top`; connect both to `top`"}},
+    {"ConnectedToEachOther",
+     "between: [upper, middle]}\n    - {name: bottom, between: [middle, lower]}",
+     "between: [upper, middle], connected_to: @bottom}\n    - {name: bottom, between: [middle, lower], connected_to: "
+     "@top}",
+     {"`bottom` is connected to `top` in turn; say it at one of the two",
+      "`top` is connected to `bottom` in turn; say it at one of the two"}},
     {"UnknownEdge",
      "{all: clamped}",
      "{all: clamped, @suoth: clamped}",
@@ -344,10 +359,6 @@ const Bad cases[] = {
      "law: closed",
      "law: @close",
      {"`law` must be one of: regulated, closed, volume, not `close`; did you mean `closed`?"}},
-    {"ArcLength",
-     "    loads:",
-     "    control: {type: @arc_length}\n    loads:",
-     {"`type: arc_length` is not available yet; load control is available"}},
     {"Duration", "    loads:", "    @duration: 5 s\n    loads:", {"`duration` is not available yet"}},
     {"History", "    loads:", "    @history: [{time: 5 s, factor: 1}]\n    loads:", {"`history` is not available yet"}},
     {"Combinations",
@@ -358,12 +369,39 @@ const Bad cases[] = {
     {"OtherLaw",
      "law: elastic",
      "law: @ogden",
-     {"`law: ogden` is not available yet; the isotropic elastic law is available"}},
+     {"`law: ogden` is not available yet; elastic, mooney_rivlin and neo_hooke are available"}},
+    {"UnknownLaw",
+     "law: elastic",
+     "law: @mooney",
+     {"`law` must be one of: elastic, mooney_rivlin, neo_hooke, not `mooney`"}},
+    {"MooneyRivlinWithoutC2",
+     "{law: elastic, E: 900 MPa, nu: 0.45,",
+     "@{law: mooney_rivlin, C1: 25 MPa,",
+     {"`etfe` lacks the key `C2`: of W (a pressure or stress with its unit)"}},
+    {"ZeroC1",
+     "{law: elastic, E: 900 MPa, nu: 0.45,",
+     "{law: mooney_rivlin, C1: @0 MPa, C2: 7 MPa,",
+     {"`C1` must be positive, not 0 MPa"}},
+    {"NegativeC2",
+     "{law: elastic, E: 900 MPa, nu: 0.45,",
+     "{law: mooney_rivlin, C1: 25 MPa, C2: @-7 MPa,",
+     {"`C2` must be at least 0 Pa, not -7 MPa"}},
+    {"C2OfNeoHooke",
+     "{law: elastic, E: 900 MPa, nu: 0.45,",
+     "{law: neo_hooke, C1: 25 MPa, @C2: 7 MPa,",
+     {"unknown key `C2` in `etfe`"}},
+    {"PoissonsRatioOfMooneyRivlin",
+     "{law: elastic, E: 900 MPa, nu: 0.45,",
+     "{law: mooney_rivlin, C1: 25 MPa, C2: 7 MPa, @nu: 0.5,",
+     {"unknown key `nu` in `etfe`"}},
     {"OrthotropicLaw",
      "E: 900 MPa",
      "@E1: 900 MPa",
      {"`E1` is not available yet; the isotropic elastic law is available"}},
-    {"TensionField", "nu: 0.45", "nu: 0.45, tension_field: @true", {"`tension_field: on` is not available yet"}},
+    {"TensionFieldThatIsNoFlag",
+     "nu: 0.45",
+     "nu: 0.45, tension_field: @wrinkles",
+     {"`tension_field` must be on or off, not `wrinkles`"}},
     {"GravityWithoutDensity",
      ", density: 1750 kg/m3}\ncushion:\n  plan: {shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n "
      " foils:\n"
@@ -387,6 +425,18 @@ const Bad cases[] = {
      "    loads:",
      "    options: {tolerance: @2}\n    loads:",
      {"`tolerance` must be between 0 and 1, not 2"}},
+    {"NoSteps",
+     "    loads:",
+     "    options: {max_steps: @0}\n    loads:",
+     {"`max_steps` must be from 1 to 100000, not 0"}},
+    {"HalfAStep",
+     "    loads:",
+     "    options: {max_steps: @1.5}\n    loads:",
+     {"`max_steps` must be a whole number, not `1.5`"}},
+    {"StepsOfFormfinding",
+     "prestress: {all: 0.89 kN/m}",
+     "prestress: {all: 0.89 kN/m}, options: {@max_steps: 3}",
+     {"unknown key `max_steps` in `options`; known: tolerance, max_iterations"}},
     {"AllAtOnce",
      "thickness: 250 um}\n    - {name: middle, material: etfe, thickness: 100 um}",
      "thickness: @250 kPa}\n    - {name: middle, material: @etff, @colour: red, thickness: @-1 mm}",
@@ -406,14 +456,14 @@ TEST(BadPolygonMesh, IsToldWhatIsAllowed) {
   EXPECT_EQ(message("mesh: {divisions: [6, 4]}"), "a polygon has one number of `divisions`, along its longest side");
 }
 
-// The keys of a pattern stage of the example, and the messages.
-struct BadPatternKeys {
+// Keys of a stage of the example, and the messages.
+struct BadKeys {
   const char* claim;
   const char* keys;
   std::vector<const char*> messages;
 };
 
-const BadPatternKeys pattern_cases[] = {
+const BadKeys pattern_cases[] = {
     {"UnknownKey",
      "@strips_per_fol: 6, roll: {width: 1.5 m, weld: 12 mm, selvedge: 10 mm}",
      {"unknown key `strips_per_fol` in `strips`; did you mean `strips_per_foil`?"}},
@@ -461,7 +511,7 @@ const BadPatternKeys pattern_cases[] = {
      {"`lines` must be one of: geodesic, straight, not `geodetic`; did you mean `geodesic`?"}},
     {"UnknownDirection",
      "strips_per_foil: 6, direction: @atuo",
-     {"`direction` must be one of: auto or an angle with its unit, not `atuo`; did you mean `auto`?"}},
+     {"`direction` must be auto or an angle with its unit, not `atuo`; did you mean `auto`?"}},
     {"DirectionWithoutUnit",
      "strips_per_foil: 6, direction: @30",
      {"`direction`: `30` has no unit; expected an angle such as `30 deg`"}},
@@ -470,7 +520,7 @@ const BadPatternKeys pattern_cases[] = {
      {"`30 m` has a unit of another kind; expected an angle"}},
     {"DirectionAsAVector",
      "strips_per_foil: 6, direction: @[1, 0]",
-     {"`direction` must be one of: auto or an angle with its unit, not a list"}},
+     {"`direction` must be auto or an angle with its unit, not a list"}},
     {"ChosenByBesideADirection",
      "strips_per_foil: 6, direction: 30 deg, @chosen_by: waste",
      {"`chosen_by` has no effect beside a given `direction`: it chooses among directions; leave it out"}},
@@ -479,7 +529,8 @@ const BadPatternKeys pattern_cases[] = {
      {"`chosen_by` must be one of: distortion, waste, not `wast`; did you mean `waste`?"}},
     {"UnknownCompensation",
      "strips_per_foil: 6, compensation: @elastisch",
-     {"`compensation` must be one of: none, elastic, not `elastisch`; did you mean `elastic`?"}},
+     {"`compensation` must be one of: none, elastic or a map with the keys warp, weft, not `elastisch`; did you mean "
+      "`elastic`?"}},
     {"HalfACompensation",
      "strips_per_foil: 6, compensation: @{warp: 0.3 %}",
      {"`compensation` lacks the key `weft`: across the roll (a ratio with its unit)"}},
@@ -526,14 +577,14 @@ const BadPatternKeys pattern_cases[] = {
     {"Control", "strips_per_foil: 6, @contact: stop", {"unknown key `contact` in `strips`"}},
 };
 
-std::ostream& operator<<(std::ostream& out, const BadPatternKeys& bad) {
+std::ostream& operator<<(std::ostream& out, const BadKeys& bad) {
   return out << bad.claim;
 }
 
-class BadPattern : public testing::TestWithParam<BadPatternKeys> {};
+class BadPattern : public testing::TestWithParam<BadKeys> {};
 
 TEST_P(BadPattern, IsToldWhatAndWhere) {
-  const BadPatternKeys& bad = GetParam();
+  const BadKeys& bad = GetParam();
   const std::string stage = std::string("{run: pattern, from: form, ") + bad.keys + "}";
   const bool is_about_the_stage = std::string(bad.keys).find('@') == std::string::npos;
   expect_messages(
@@ -542,6 +593,161 @@ TEST_P(BadPattern, IsToldWhatAndWhere) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, BadPattern, testing::ValuesIn(pattern_cases),
                          [](const auto& used) { return std::string(used.param.claim); });
+
+// What stands behind `control:` in the wind stage of the example, whose upper chamber is closed.
+const BadKeys control_cases[] = {
+    {"UnknownWord",
+     "@lood",
+     {"`control` must be load or a map with the key `type` (one of: load, displacement, volume, arc_length), "
+      "not `lood`; did you mean `load`?"}},
+    {"DisplacementInAWord", "@displacement", {"`control` must be load or a map with the key `type`"}},
+    {"NoType", "@{steps: 3}", {"`control` lacks the key `type`: one of load, displacement, volume, arc_length"}},
+    {"UnknownType",
+     "{type: @arclength}",
+     {"`type` must be one of: load, displacement, volume, arc_length, not `arclength`; did you mean `arc_length`?"}},
+    {"KeyOfAnotherType", "{type: load, @until: 1 m}", {"unknown key `until` in `control`"}},
+    {"NoParts", "{type: load, steps: @0}", {"`steps` must be from 1 to 100000, not 0"}},
+    {"DisplacementWithoutEnd",
+     "@{type: displacement, foil: upper}",
+     {"`control` lacks the key `until`: the displacement in the end; its sign counts along the direction (a length "
+      "with its unit)"}},
+    {"DisplacementOfAnotherKind",
+     "{type: displacement, foil: upper, until: @0.1 m3}",
+     {"`0.1 m3` has a unit of another kind; expected a length"}},
+    {"NoDisplacement", "{type: displacement, at: [0 m, 0 m], foil: upper, until: @0 m}", {"`until` must not be zero"}},
+    {"LargestDisplacementWithSign",
+     "{type: displacement, at: max, foil: upper, until: @-0.1 m}",
+     {"`until` must be positive, not -0.1 m: the largest displacement (`at: max`) has no sign"}},
+    {"DirectionOfTheLargest",
+     "{type: displacement, foil: upper, @direction: [0, 0, 1], until: 0.1 m}",
+     {"`direction` is for a displacement at a place, not the largest (`at: max`); leave it out"}},
+    {"ZeroDirection",
+     "{type: displacement, at: [0 m, 0 m], foil: upper, direction: @[0, 0, 0], until: 0.1 m}",
+     {"`direction` must not be zero"}},
+    {"DirectionInPlan",
+     "{type: displacement, at: [0 m, 0 m], foil: upper, direction: @[1, 0], until: 0.1 m}",
+     {"`direction` must have 3 entries, not 2"}},
+    {"PlaceInSpace",
+     "{type: displacement, at: @[0 m, 0 m, 0 m], foil: upper, until: 0.1 m}",
+     {"`at` must have 2 entries, not 3"}},
+    {"UnknownPlace",
+     "{type: displacement, at: @apex, foil: upper, until: 0.1 m}",
+     {"`at` must be max or a list [...], not `apex`"}},
+    {"DisplacementOfNoFoil",
+     "@{type: displacement, until: 0.1 m}",
+     {"`control` lacks the key `foil`; foils: upper, middle, lower"}},
+    {"DisplacementOfAnUnknownFoil",
+     "{type: displacement, foil: @uper, until: 0.1 m}",
+     {"there is no foil `uper`; did you mean `upper`?; foils: upper, middle, lower"}},
+    {"VolumeOfNoChamber", "@{type: volume, until: 5 m3}", {"`control` lacks the key `chamber`; chambers: top, bottom"}},
+    {"VolumeOfAnUnknownChamber",
+     "{type: volume, chamber: @buttom, until: 5 m3}",
+     {"there is no chamber `buttom`; did you mean `bottom`?; chambers: top, bottom"}},
+    {"NegativeVolume", "{type: volume, chamber: bottom, until: @-5 m3}", {"`until` must be positive, not -5 m3"}},
+    {"VolumeOfClosedAir",
+     "{type: volume, chamber: @top, until: 5 m3}",
+     {"the volume of `top` cannot be controlled: its gas (`law: closed`) decides it; allowed: regulated"}},
+    {"ArcWithoutEnd",
+     "@{type: arc_length}",
+     {"`control` lacks the key `until`: the path ends at the first that is reached"}},
+    {"ArcUntilNothing",
+     "{type: arc_length, until: @{}}",
+     {"`until` needs at least one of: load_factor, pressure, volume, displacement, after_peak; it has none"}},
+    {"ArcUntilAQuantity",
+     "{type: arc_length, until: @0.1 m}",
+     {"`until` must be a map with the keys load_factor, pressure, volume, displacement, after_peak, not `0.1 m`"}},
+    {"ZeroLoadFactor", "{type: arc_length, until: {load_factor: @0}}", {"`load_factor` must be positive, not 0"}},
+    {"AfterPeakInPercent",
+     "{type: arc_length, until: {after_peak: @50}}",
+     {"`after_peak` must be between 0 and 1, not 50"}},
+    {"NegativeLargestDisplacement",
+     "{type: arc_length, until: {displacement: @-1 m}}",
+     {"`displacement` must be positive, not -1 m"}},
+    {"ArcUntilThePressureOfNoChamber",
+     "@{type: arc_length, until: {pressure: 1 kPa}}",
+     {"`control` lacks the key `chamber`; chambers: top, bottom"}},
+    {"ArcUntilThePressureOfAnUnknownChamber",
+     "{type: arc_length, until: {pressure: 1 kPa}, chamber: @tpo}",
+     {"there is no chamber `tpo`; did you mean `top`?"}},
+    {"ArcOfAnUnknownFoil",
+     "{type: arc_length, until: {displacement: 1 m}, foil: @lwoer}",
+     {"there is no foil `lwoer`; did you mean `lower`?"}},
+    {"ArcWithChamberAndFoilForNothing",
+     "{type: arc_length, until: {load_factor: 1}, @chamber: top, @foil: upper}",
+     {"`chamber` is for `until: {pressure: ...}` or `{volume: ...}`; leave it out",
+      "`foil` is for `until: {displacement: ...}`; leave it out"}},
+};
+
+class BadControl : public testing::TestWithParam<BadKeys> {};
+
+TEST_P(BadControl, IsToldWhatAndWhere) {
+  const BadKeys& bad = GetParam();
+  expect_messages("    loads:", "    control: " + std::string(bad.keys) + "\n    loads:", bad.messages);
+}
+
+TEST(BadControl, VolumeOfAPrescribedVolumeIsToldWhatDecidesIt) {
+  const Folder folder;
+  const std::string text =
+      replaced(example, "law: closed, kappa: 1.4}}",
+               "law: volume, volume: 4 m3}}\n    control: {type: volume, chamber: top, until: 5 m3}");
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_EQ(result.problems[0].message,
+            "the volume of `top` cannot be controlled: its gas (`law: volume`) decides it; allowed: regulated");
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, BadControl, testing::ValuesIn(control_cases),
+                         [](const auto& used) { return std::string(used.param.claim); });
+
+// The example with the lower chamber connected to the upper one.
+std::string connected() {
+  return replaced(example, "between: [middle, lower]}", "between: [middle, lower], connected_to: top}");
+}
+
+TEST(ConnectedChamber, HasNoOtherPressureThanTheOneItIsConnectedTo) {
+  const Folder folder;
+  const ReadResult result = read_workflow(folder.write("w.yaml", connected()));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_THAT(to_string(result.problems[0]),
+              testing::EndsWith("w.yaml:18:78: `bottom` is connected to `top` and has its pressure, 400 "
+                                "Pa, not 300 Pa; leave it out"));
+}
+
+TEST(ConnectedChamber, DoesNotStateThePressureInsteadOfTheOneItIsConnectedTo) {
+  const Folder folder;
+  const std::string text = replaced(replaced(connected(), "bottom: 300 Pa", "bottom: 400 Pa"),
+                                    "{top: 400 Pa, bottom: 400 Pa}", "{bottom: 400 Pa}");
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_THAT(to_string(result.problems[0]),
+              testing::EndsWith("w.yaml:17:53: `gauge_pressure` says nothing about the chamber `top`; `bottom` is "
+                                "connected to it and takes its pressure"));
+}
+
+TEST(ConnectedChamber, HasNoGasOfItsOwnInAWindStage) {
+  const Folder folder;
+  const std::string text =
+      replaced(replaced(connected(), "bottom: 300 Pa", "bottom: 400 Pa"), "gas: {top: {law: closed, kappa: 1.4}}",
+               "gas: {top: {law: closed, kappa: 1.4}, bottom: {law: closed}}");
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_TRUE(
+      testing::Value(to_string(result.problems[0]),
+                     testing::EndsWith("w.yaml:22:43: `bottom` is connected to `top` and has no air of its own; "
+                                       "say the law of `top`")))
+      << to_string(result.problems[0]);
+}
+
+TEST(ConnectedChamber, HasNoVolumeToControlWhereTheSharedAirIsClosed) {
+  const Folder folder;
+  const std::string text =
+      replaced(replaced(connected(), "bottom: 300 Pa", "bottom: 400 Pa"),
+               "    loads:", "    control: {type: volume, chamber: bottom, until: 5 m3}\n    loads:");
+  const ReadResult result = read_workflow(folder.write("w.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_EQ(result.problems[0].message,
+            "the volume of `top` cannot be controlled: its gas (`law: closed`) decides it; allowed: regulated");
+}
 
 INSTANTIATE_TEST_SUITE_P(Cases, BadWorkflow, testing::ValuesIn(cases),
                          [](const auto& used) { return std::string(used.param.claim); });

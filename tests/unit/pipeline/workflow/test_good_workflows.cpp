@@ -47,6 +47,10 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
+const ElasticLaw& elastic_of(const Workflow& workflow, const std::string& material) {
+  return std::get<ElasticLaw>(workflow.materials.at(material).law);
+}
+
 TEST(GoodWorkflow, ValuesAreInSi) {
   const Workflow workflow = read_good(example);
   EXPECT_EQ(workflow.name, "Test cushion");
@@ -55,7 +59,7 @@ TEST(GoodWorkflow, ValuesAreInSi) {
   EXPECT_EQ(plan.width, 3);
   ASSERT_EQ(workflow.cushion.foils.size(), 3U);
   EXPECT_EQ(workflow.cushion.foils[0].thickness, 0.00025);
-  EXPECT_EQ(workflow.materials.at("etfe").law.E, 9e8);
+  EXPECT_EQ(elastic_of(workflow, "etfe").E, 9e8);
   EXPECT_EQ(workflow.materials.at("etfe").density, 1750);
   ASSERT_EQ(workflow.cushion.chambers.size(), 2U);
   EXPECT_EQ(workflow.cushion.chambers[1].outer, "middle");
@@ -87,8 +91,159 @@ TEST(GoodWorkflow, DefaultsAreThoseOfTheContract) {
   EXPECT_EQ(mesh.stress_rule, geometry::StressRule::full);
   const auto& gust = std::get<WindSettings>(workflow.stages[3].settings);
   EXPECT_TRUE(gust.contact_stops);
+  EXPECT_TRUE(std::holds_alternative<LoadControl>(gust.control.kind));
   EXPECT_FALSE(gust.control.steps);
+  EXPECT_FALSE(workflow.stages[3].options.max_steps);
+  EXPECT_FALSE(workflow.materials.at("etfe").tension_field);
+  EXPECT_EQ(workflow.cushion.chambers[1].connected_to, "");
   EXPECT_EQ(gust.loads.at(0).factor, 1);
+}
+
+// The example with such a control of its wind stage, in which the upper chamber is closed.
+std::string with_control(const std::string& control) {
+  return replaced(example, "    loads:", "    control: " + control + "\n    loads:");
+}
+
+Control wind_control(const std::string& control) {
+  return std::get<WindSettings>(read_good(with_control(control)).stages.at(3).settings).control;
+}
+
+TEST(GoodWorkflow, LoadControlIsSaidInAWordOrWithParts) {
+  const Control word = wind_control("load");
+  EXPECT_TRUE(std::holds_alternative<LoadControl>(word.kind));
+  EXPECT_FALSE(word.steps);
+  EXPECT_EQ(wind_control("{type: load, steps: 7}").steps, 7);
+}
+
+TEST(GoodWorkflow, DisplacementIsControlledAtAPlaceOrTheLargest) {
+  const auto at = [](const std::string& control) { return std::get<DisplacementControl>(wind_control(control).kind); };
+  const DisplacementControl place =
+      at("{type: displacement, at: [1 m, -50 cm], foil: lower, direction: [0, 3, -4], until: -10 cm, steps: 5}");
+  EXPECT_EQ(place.at, base::Vec2(1, -0.5));
+  EXPECT_EQ(place.foil, "lower");
+  EXPECT_EQ(place.direction, Vec3(0, 0.6, -0.8));
+  EXPECT_EQ(place.until, -0.1);
+  EXPECT_EQ(at("{type: displacement, at: [1 m, -50 cm], foil: lower, until: -10 cm}").direction, Vec3(0, 0, 0));
+  EXPECT_FALSE(at("{type: displacement, foil: upper, until: 10 cm}").at);
+  EXPECT_FALSE(at("{type: displacement, at: max, foil: upper, until: 10 cm}").at);
+}
+
+TEST(GoodWorkflow, VolumeOfRegulatedAirIsControlled) {
+  const Control control = wind_control("{type: volume, chamber: bottom, until: 5000 l, steps: 2}");
+  EXPECT_EQ(std::get<VolumeControl>(control.kind).chamber, "bottom");
+  EXPECT_DOUBLE_EQ(std::get<VolumeControl>(control.kind).until, 5);
+  EXPECT_EQ(control.steps, 2);
+}
+
+TEST(GoodWorkflow, ArcLengthEndsAtTheFirstOfSeveral) {
+  const auto arc = [](const std::string& keys) {
+    return std::get<ArcLengthControl>(wind_control("{type: arc_length, " + keys + "}").kind);
+  };
+  const ArcLengthControl all = arc("until: {load_factor: 1.5, pressure: 30 kPa, volume: 9 m3, displacement: 20 cm, "
+                                   "after_peak: 0.8}, chamber: top, foil: middle");
+  EXPECT_EQ(all.load_factor, 1.5);
+  EXPECT_EQ(all.pressure, 30e3);
+  EXPECT_EQ(all.volume, 9);
+  EXPECT_EQ(all.displacement, 0.2);
+  EXPECT_EQ(all.after_peak, 0.8);
+  EXPECT_EQ(all.chamber, "top");
+  EXPECT_EQ(all.foil, "middle");
+  const ArcLengthControl any_foil = arc("until: {displacement: 20 cm}");
+  EXPECT_EQ(any_foil.foil, "");
+  EXPECT_EQ(any_foil.chamber, "");
+  EXPECT_FALSE(any_foil.load_factor || any_foil.pressure || any_foil.volume || any_foil.after_peak);
+}
+
+// One foil over a base.
+const std::string single_foil = R"(pneuma: 1
+materials:
+  rubber: {law: neo_hooke, C1: 200 kPa, density: 1100 kg/m3}
+cushion:
+  plan: {shape: circle, radius: 0.1 m}
+  base: rigid
+  foils: [{name: skin, material: rubber, thickness: 1 mm}]
+  chambers: [{name: main, between: [skin, base]}]
+mesh: {size: 0.02 m}
+stages:
+  burst:
+    run: inflate
+    from: mesh
+    gauge_pressure: {main: 1 kPa}
+    control: {type: arc_length, until: {pressure: 30 kPa, displacement: 0.2 m}}
+  pushed:
+    run: inflate
+    from: mesh
+    gauge_pressure: {main: 1 kPa}
+    control: {type: displacement, until: 5 cm}
+  filled:
+    run: inflate
+    from: mesh
+    gauge_pressure: {main: 1 kPa}
+    control: {type: volume, until: 1 l}
+    options: {max_steps: 40}
+)";
+
+TEST(GoodWorkflow, TheOnlyFoilAndTheOnlyChamberNeedNotBeNamed) {
+  const Workflow workflow = read_good(single_foil);
+  const auto control = [&](std::size_t i) { return std::get<InflateSettings>(workflow.stages.at(i).settings).control; };
+  EXPECT_EQ(std::get<ArcLengthControl>(control(1).kind).chamber, "main");
+  EXPECT_EQ(std::get<DisplacementControl>(control(2).kind).foil, "skin");
+  EXPECT_EQ(std::get<VolumeControl>(control(3).kind).chamber, "main");
+  EXPECT_EQ(workflow.stages.at(3).options.max_steps, 40);
+}
+
+TEST(GoodWorkflow, NeoHookeIsMooneyRivlinWithoutItsSecondTerm) {
+  const auto law = [](const std::string& keys) {
+    const Workflow workflow = read_good(replaced(example, "law: elastic, E: 900 MPa, nu: 0.45", keys));
+    return std::get<MooneyRivlinLaw>(workflow.materials.at("etfe").law);
+  };
+  EXPECT_EQ(law("law: mooney_rivlin, C1: 25 MPa, C2: 7 MPa").C1, 25e6);
+  EXPECT_EQ(law("law: mooney_rivlin, C1: 25 MPa, C2: 7 MPa").C2, 7e6);
+  EXPECT_EQ(law("law: neo_hooke, C1: 25 MPa").C1, 25e6);
+  EXPECT_EQ(law("law: neo_hooke, C1: 25 MPa").C2, 0);
+}
+
+TEST(GoodWorkflow, TensionFieldGoesWithEveryLaw) {
+  for (const char* law : {"law: elastic, E: 900 MPa, nu: 0.45", "law: mooney_rivlin, C1: 25 MPa, C2: 7 MPa",
+                          "law: neo_hooke, C1: 25 MPa"}) {
+    const Workflow workflow =
+        read_good(replaced(example, "law: elastic, E: 900 MPa, nu: 0.45", std::string(law) + ", tension_field: on"));
+    EXPECT_TRUE(workflow.materials.at("etfe").tension_field);
+  }
+}
+
+// The example with the lower chamber connected to the upper one; of the lower one's pressure it says this.
+std::string connected(const std::string& bottom_pressure) {
+  return replaced(
+      replaced(replaced(example, "between: [middle, lower]}", "between: [middle, lower], connected_to: top}"),
+               ", bottom: 400 Pa", bottom_pressure),
+      ", bottom: 300 Pa", bottom_pressure);
+}
+
+TEST(GoodWorkflow, ConnectedChamberHasThePressureOfTheOneItIsConnectedTo) {
+  for (const char* pressure : {"", ", bottom: 0.4 kPa"}) {
+    const Workflow workflow = read_good(connected(pressure));
+    EXPECT_EQ(workflow.cushion.chambers[0].connected_to, "");
+    EXPECT_EQ(workflow.cushion.chambers[1].connected_to, "top");
+    const auto& form = std::get<FormfindSettings>(workflow.stages[1].settings);
+    EXPECT_THAT(form.gauge_pressure, ElementsAre(Pair("bottom", 400), Pair("top", 400)));
+    const auto& inflated = std::get<InflateSettings>(workflow.stages[2].settings);
+    EXPECT_THAT(inflated.gauge_pressure, ElementsAre(Pair("bottom", 400), Pair("top", 400)));
+  }
+}
+
+TEST(GoodWorkflow, GasStandsAtTheChambersThatHaveAnAirOfTheirOwn) {
+  const Workflow workflow = read_good(connected(""));
+  const auto& gust = std::get<WindSettings>(workflow.stages[3].settings);
+  ASSERT_EQ(gust.gas.size(), 1U);
+  EXPECT_EQ(std::get<ClosedGas>(gust.gas.at("top")).kappa, 1.4);
+}
+
+TEST(GoodWorkflow, ConnectedChambersAreOneWhereAControlNeedsOne) {
+  const Workflow workflow = read_good(
+      replaced(connected(""), "    loads:", "    control: {type: arc_length, until: {pressure: 1 kPa}}\n    loads:"));
+  const auto& gust = std::get<WindSettings>(workflow.stages[3].settings);
+  EXPECT_EQ(std::get<ArcLengthControl>(gust.control.kind).chamber, "top");
 }
 
 // The example with a pattern stage of these keys.
@@ -262,7 +417,7 @@ TEST(GoodWorkflow, MaterialsComeFromFilesBesideIt) {
   const ReadResult result = read_workflow(folder.write("p/w.yaml", text));
   EXPECT_EQ(lines_of(result), "");
   EXPECT_EQ(result.workflow.materials.size(), 1U); // those the foils use
-  EXPECT_EQ(result.workflow.materials.at("etfe").law.nu, 0.45);
+  EXPECT_EQ(elastic_of(result.workflow, "etfe").nu, 0.45);
   EXPECT_EQ(to_string(result.workflow.origins.at("materials.etfe.nu")), "../m/a.yaml:1:38");
 }
 
@@ -272,7 +427,7 @@ TEST(GoodWorkflow, MaterialsOfThisRepositoryAreGood) {
       replaced(example, "materials:\n  etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\n",
                "materials: " + file + "\n");
   for (int i = 0; i < 3; ++i) text = replaced(text, "material: etfe,", "material: etfe_elastic,");
-  EXPECT_EQ(read_good(text).materials.at("etfe_elastic").law.E, 9e8);
+  EXPECT_EQ(elastic_of(read_good(text), "etfe_elastic").E, 9e8);
 }
 
 TEST(GoodWorkflow, ImplausibleValuesAreWarnings) {
@@ -322,6 +477,20 @@ std::vector<std::string> varied() {
                "thickness: 250 um", "thickness: 250 um, warp: 33 deg"),
       replaced(replaced(example, "  chambers:\n", "  base: rigid\n  chambers:\n"), "between: [middle, lower]",
                "between: [base, lower], dead_volume: 12 l"),
+      with_control("load"),
+      with_control("{type: displacement, at: [0.1 m, -50 cm], foil: lower, direction: [0.1, 0.2, 0.97], until: -11.1 "
+                   "cm, steps: 5}"),
+      with_control("{type: displacement, at: [0.1 m, 1 ft], foil: upper, until: 3 in}"),
+      with_control("{type: displacement, foil: upper, until: 3 in}"),
+      with_control("{type: volume, chamber: bottom, until: 4321 l}"),
+      with_control("{type: arc_length, until: {load_factor: 1.3, pressure: 33.3 kPa, volume: 9.1 m3, displacement: "
+                   "20.1 cm, after_peak: 0.83}, chamber: top, foil: middle, steps: 3}"),
+      with_control("{type: arc_length, until: {after_peak: 0.83}}\n    options: {max_steps: 33}"),
+      single_foil,
+      replaced(example, "law: elastic, E: 900 MPa, nu: 0.45",
+               "law: mooney_rivlin, C1: 25.1 MPa, C2: 7.3 MPa, tension_field: on"),
+      connected(""),
+      connected(", bottom: 0.4 kPa"),
       replaced(with_pattern("strips_per_foil: 6"), inflated, inflated_strips),
       with_pattern("roll: {width: 1.55 m, weld: 12 mm, selvedge: 1.3 cm}, lines: straight, chosen_by: waste, "
                    "compensation: {warp: 0.37 %, weft: 0.21 %}, decompensation: 0.33 m, "
@@ -369,6 +538,28 @@ TEST(StageFile, OfAPatternHasEveryValueThatHasAnEffect) {
               HasSubstr("  strips:\n    run: pattern\n    from: form\n    from_run: formfind\n    strips_per_foil: 6\n"
                         "    lines: geodesic\n    direction: auto\n    chosen_by: distortion\n    compensation: none\n"
                         "    allowance: {clamp: 0.03 m, notches: 0.5 m}\n    options: {}\n"));
+}
+
+TEST(StageFile, SaysHowThePathIsFollowed) {
+  const auto text = [](const std::string& control) {
+    const Workflow workflow = read_good(with_control(control));
+    return stage_yaml(workflow, workflow.stages[3]);
+  };
+  EXPECT_THAT(text("load"), HasSubstr("    control: {type: load}\n"));
+  EXPECT_THAT(text("load"), HasSubstr("stages.gust.control.type: \"w.yaml:23:14\""));
+  EXPECT_THAT(text("{type: displacement, foil: upper, until: 100 mm, steps: 4}"),
+              HasSubstr("    control: {type: displacement, at: max, foil: upper, until: 0.1 m, steps: 4}\n"));
+  EXPECT_THAT(
+      text("{type: arc_length, until: {pressure: 1 kPa, after_peak: 0.5}, chamber: top}"),
+      HasSubstr("      type: arc_length\n      until: {pressure: 1000 Pa, after_peak: 0.5}\n      chamber: top\n"));
+}
+
+TEST(StageFile, CarriesThePlaceOfThePressureThatAConnectedChamberTakes) {
+  const Workflow workflow = read_good(connected(""));
+  const std::string text = stage_yaml(workflow, workflow.stages[1]);
+  EXPECT_THAT(text, HasSubstr("    gauge_pressure: {bottom: 400 Pa, top: 400 Pa}\n"));
+  EXPECT_THAT(text, HasSubstr("stages.form.gauge_pressure.bottom: \"w.yaml:17:59\""));
+  EXPECT_THAT(text, HasSubstr("connected_to: top"));
 }
 
 TEST(StageFile, CarriesThePlacesOfCurvesOfAllFoils) {
@@ -459,6 +650,7 @@ TEST(Reference, NamesEveryKeyWithUnitAndDefault) {
   const std::string text = workflow_reference();
   EXPECT_THAT(text, HasSubstr("thickness: as rolled, unstressed; a length with its unit, positive; required"));
   EXPECT_THAT(text, HasSubstr("contact: what happens when foils meet; one of: stop, ignore [stop]"));
+  EXPECT_THAT(text, HasSubstr("type arc_length: a length along the path grows, load and displacement follow"));
 }
 
 } // namespace
