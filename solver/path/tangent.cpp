@@ -131,18 +131,18 @@ void Tangent::factorize_indefinite(std::size_t foil, std::span<const double> val
 }
 
 // Raises the artificial tension of a foil until its matrix is positive definite.
-bool Tangent::add_tension(std::size_t foil, double tension, int& factorizations) {
+bool Tangent::add_tension(std::size_t foil, int& factorizations) {
   const assembly::FoilEquations& equations = system_.foils()[foil];
   Factor& factor = factors_[foil];
   factor.indefinite = factor.singular = false;
   std::vector<double> shifted;
+  if (!(factor.shift > 0)) return false; // no load, no tension: nothing to scale with
   for (int tries = 0; tries < max_shift_tries; ++tries) {
-    if (!(factor.shift > 0)) return false; // no load, no tension: nothing to scale with
     shifted = equations.tangent;
     for (std::size_t k = 0; k < shifted.size(); ++k) shifted[k] += factor.shift * equations.laplacian[k];
     ++factorizations;
     if (factor.cholesky.factorize(equations.pattern, shifted)) return true;
-    factor.shift = factor.shift > 0 ? factor.shift * shift_growth : 1e-3 * tension;
+    factor.shift *= shift_growth;
   }
   return false;
 }
@@ -171,7 +171,7 @@ bool Tangent::factorize(const Configuration& configuration, Repair repair) {
       factor.shift = factor.shift > 0 ? factor.shift * shift_growth : 1e-3 * tension;
     }
     if (factor.shift > 0) {
-      done[i] = add_tension(i, tension, count[i]) ? 1 : 0;
+      done[i] = add_tension(i, count[i]) ? 1 : 0;
       return;
     }
     ++count[i];
@@ -184,7 +184,7 @@ bool Tangent::factorize(const Configuration& configuration, Repair repair) {
       factorize_indefinite(i, foil.tangent);
     } else {
       factor.shift = 1e-3 * tension;
-      done[i] = add_tension(i, tension, count[i]) ? 1 : 0;
+      done[i] = add_tension(i, count[i]) ? 1 : 0;
     }
   });
   sum_up();
@@ -209,7 +209,7 @@ bool Tangent::factorize(const Configuration& configuration, Repair repair) {
       base::parallel_chunks(system_.threads(), factors_.size(), [&](std::size_t i) {
         if (!factors_[i].indefinite) return;
         factors_[i].shift = 1e-3 * tension;
-        done[i] = add_tension(i, tension, count[i]) ? 1 : 0;
+        done[i] = add_tension(i, count[i]) ? 1 : 0;
       });
       sum_up();
       if (std::find(done.begin(), done.end(), 0) != done.end()) return false;

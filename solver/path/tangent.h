@@ -104,7 +104,7 @@ private:
   void take_gradients(std::size_t foil);
   MatX solve(std::size_t foil, const MatX& right);
   double reference_tension(const Configuration& configuration) const;
-  bool add_tension(std::size_t foil, double tension, int& factorizations);
+  bool add_tension(std::size_t foil, int& factorizations);
   int coupled_negative(const Configuration& configuration, const Row* held);
   Change zero() const;
   Change residual(const Configuration& configuration) const; // right side: -R, r
