@@ -38,6 +38,16 @@ std::string pressures_of(const System& system, const CriticalPoint& point) {
   return text;
 }
 
+// With a tension field an element that is taut nowhere folds like cloth: that it lies upside down says nothing.
+bool is_folded(const assembly::FoilEquations& foil, Index element, const Configuration& at) {
+  if (!material::has_tension_field(foil.membrane.law)) return false;
+  const std::vector<element::PointState> states = element::point_states(foil.membrane, at.positions, {});
+  const auto points = static_cast<std::ptrdiff_t>(foil.membrane.reference.points);
+  const auto first = states.begin() + element * points;
+  return std::none_of(first, first + points,
+                      [](const element::PointState& p) { return p.surface == material::Surface::taut; });
+}
+
 } // namespace
 
 bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
@@ -54,7 +64,7 @@ bool turned_over(const System& system, const Configuration& before, const Config
       const geometry::Block& block = mesh.blocks[static_cast<std::size_t>(foil.block)];
       for (Index e = 0; e < mesh.element_count(block) && !turned; ++e) {
         const std::span<const Index> nodes = mesh.element_nodes(block, e);
-        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0;
+        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0 && !is_folded(foil, e, after);
       }
     }
   });
