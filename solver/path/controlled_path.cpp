@@ -135,7 +135,8 @@ private:
       const std::optional<Goal> goal = next_goal();
       if (!goal) return;
       if (!shortest) shortest = options_.smallest_step * first_length();
-      Configuration next = moved(system_, at_, predicted(*goal));
+      const Change foreseen = predicted(*goal);
+      Configuration next = moved(system_, at_, foreseen);
       const Newton::Outcome outcome = solve(next, *goal);
       std::string reason = outcome.reason;
       if (outcome.converged) {
@@ -143,7 +144,7 @@ private:
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
-        } else if (take(*goal, next, outcome.iterations)) {
+        } else if (take(*goal, next, outcome.iterations, std::sqrt(dot_u(foreseen, foreseen)))) {
           return;
         } else {
           reason = "the path bends too much, or its end is passed but not found";
@@ -314,8 +315,17 @@ private:
     return false;
   }
 
+  // Whether a step is much longer than the tangents at both its ends foresee: another branch has the held quantity too,
+  // behind a place where it turns back.
+  bool jumped(const Goal& goal, double length, double foreseen) const {
+    if (is_arc() || !way_) return false;
+    constexpr double much = 1.5;
+    const double rate = std::abs(dot(row_of(goal.held, goal.to, system_, at_).form, *way_));
+    return length > much * std::max(foreseen, std::abs(goal.to - goal.from) / rate);
+  }
+
   // A step was found: first what lies between, then the step itself. False: it is too long.
-  bool take(const Goal& goal, const Configuration& next, int iterations) {
+  bool take(const Goal& goal, const Configuration& next, int iterations, double foreseen) {
     const Configuration from = at_;
     const double rate = rate_.value_or(way_->load_factor);
     std::optional<int> count = count_;
@@ -330,6 +340,7 @@ private:
       last_ = last_before;
       return false;
     };
+    if (jumped(goal, length, foreseen)) return too_long();
     const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
     if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
         (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
