@@ -13,6 +13,8 @@ namespace {
 constexpr double cut = 4;                // a failed step is made so much shorter
 constexpr double wanted_iterations = 4;  // of a step
 constexpr int most_critical_points = 20; // beyond, bifurcations are not located
+constexpr double most_of_span = 0.01;    // of the first arc
+constexpr double sliver = 1e-3;          // of a step: behind a limit point no step of its own
 
 Configuration between(const Configuration& a, const Configuration& b, double part) {
   Configuration c = a;
@@ -42,6 +44,10 @@ public:
     length_ = options_.first_step * std::abs(until() - start_);
     look();
     count_ = count_ahead_;
+    if (!is_arc() && std::abs(until() - start_) <= newton_.options().tolerance * std::abs(start_)) {
+      result_.held = held_quantity();
+      result_.end = PathEnd::reached; // it stands there
+    }
     while (result_.end == PathEnd::stuck && result_.reason.empty()) {
       if (result_.steps >= options_.max_steps) {
         result_.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options_.max_steps,
@@ -129,7 +135,8 @@ private:
       const std::optional<Goal> goal = next_goal();
       if (!goal) return;
       if (!shortest) shortest = options_.smallest_step * first_length();
-      Configuration next = moved(system_, at_, predicted(*goal));
+      const Change foreseen = predicted(*goal);
+      Configuration next = moved(system_, at_, foreseen);
       const Newton::Outcome outcome = solve(next, *goal);
       std::string reason = outcome.reason;
       if (outcome.converged) {
@@ -137,19 +144,48 @@ private:
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
-        } else if (take(*goal, next, outcome.iterations)) {
+        } else if (take(*goal, next, outcome.iterations, std::sqrt(dot_u(foreseen, foreseen)))) {
           return;
         } else {
-          reason = "the path bends too much";
+          reason = "the path bends too much, or its end is passed but not found";
         }
       }
       system_.evaluate(at_, true);
       length_ = std::abs(goal->to - goal->from) / cut;
       if (length_ < *shortest) {
+        if (!is_arc() && turns_back_ahead(*goal)) {
+          result_.reason = fmt::format("the controlled quantity turns back near {:.6g}, load factor {:.6g}: arc_length "
+                                       "goes on",
+                                       goal->from, at_.load_factor);
+          return;
+        }
         result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor, reason);
         return;
       }
     }
+  }
+
+  // Whether a short arc beyond the last accepted state leads to where the held quantity goes back.
+  bool turns_back_ahead(const Goal& goal) {
+    if (!last_) return false;
+    const Configuration from = at_;
+    const std::optional<Change> way_before = way_, last_before = last_;
+    bool turns = false;
+    double length = root_mean_square(system_, *last_);
+    for (int tries = 0; tries < 6 && !turns; ++tries, length *= cut) {
+      Configuration next = moved(system_, from, (length / root_mean_square(system_, *way_before)) * *way_before);
+      if (!solve(next, {HeldArc{from.positions}, 0, length, false}).converged) break;
+      last_ = difference(from, next);
+      at_ = next;
+      look();
+      if (!way_ || dot_u(*way_, *way_before) < 0.5) break;
+      turns = dot(row_of(goal.held, goal.to, system_, at_).form, *way_) * (goal.to - goal.from) < 0;
+    }
+    at_ = from;
+    way_ = way_before;
+    last_ = last_before;
+    system_.evaluate(at_, true);
+    return turns;
   }
 
   double first_length() {
@@ -157,11 +193,22 @@ private:
     return options_.first_step * std::abs(until() - start_);
   }
 
+  double part_end() const {
+    return part_ >= options_.parts ? until() : start_ + (until() - start_) * part_ / options_.parts;
+  }
+
+  double span() const {
+    double span = 0;
+    for (const Vec3& x : at_.positions) span = std::max(span, (x - at_.positions.front()).norm());
+    return span;
+  }
+
   std::optional<Goal> next_goal() {
     if (is_arc()) {
       if (first_arc_ == 0) {
         const double rate = std::max(std::abs(way_->load_factor), 1e-300);
-        first_arc_ = options_.first_step / rate * root_mean_square(system_, *way_);
+        // at a limit point the load says nothing about lengths
+        first_arc_ = std::min(options_.first_step / rate * root_mean_square(system_, *way_), most_of_span * span());
         if (length_ == 0) length_ = first_arc_;
       }
       return Goal{HeldArc{at_.positions}, 0, length_, true};
@@ -169,14 +216,16 @@ private:
     Goal goal{held_quantity(), way_value(), 0, false};
     const Row row = row_of(goal.held, goal.from, system_, at_);
     const double forward = until() >= start_ ? 1 : -1;
-    if (dot(row.form, *way_) * forward <= 0) {
-      result_.reason =
-          fmt::format("the controlled quantity turns back at {:.6g}, load factor {:.6g}: arc_length goes on", goal.from,
-                      at_.load_factor);
+    const double rate = dot(row.form, *way_) * forward;
+    constexpr double rounding = 1e-10;
+    if (rate <= rounding * std::sqrt(dot_u(row.form, row.form))) {
+      result_.reason = fmt::format("the controlled quantity {} at {:.6g}, load factor {:.6g}: {}",
+                                   rate < 0 ? "turns back" : "does not move with the load", goal.from, at_.load_factor,
+                                   rate < 0 ? "arc_length goes on" : "control another one");
       return std::nullopt;
     }
     // to the end of a part at most, without a sliver before it
-    const double end = part_ >= options_.parts ? until() : start_ + (until() - start_) * part_ / options_.parts;
+    const double end = part_end();
     const double left = std::abs(end - goal.from);
     const bool to_end = length_ > 0.999 * left;
     goal.to = to_end ? end : goal.from + forward * (length_ > 0.6 * left ? 0.5 * left : length_);
@@ -211,16 +260,31 @@ private:
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;
         away = away || !forward;
-        if (!forward || std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
+        const bool beyond = (now - part_end()) * (until() - start_) > 0;
+        if (!forward || beyond ||
+            std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
           continue;
       }
-      last_ = difference(at_, next);
+      const Configuration from = at_;
+      const std::optional<Change> last_before = last_;
+      last_ = difference(from, next);
       at_ = std::move(next);
       look();
+      const End end = end_between(from);
+      if (end == End::missed) {
+        at_ = from;
+        last_ = last_before;
+        way_.reset();
+        continue;
+      }
       count_ = count_ahead_;
       rate_.reset();
       if (is_arc()) length_ = first_arc_ = root_mean_square(system_, *last_);
-      accept(outcome.iterations, is_arc());
+      if (end == End::found) {
+        finish(outcome.iterations);
+      } else {
+        accept(outcome.iterations, is_arc());
+      }
       return;
     }
     system_.evaluate(at_, true);
@@ -251,41 +315,64 @@ private:
     return false;
   }
 
+  // Whether a step is much longer than the tangents at both its ends foresee: another branch has the held quantity too,
+  // behind a place where it turns back.
+  bool jumped(const Goal& goal, double length, double foreseen) const {
+    if (is_arc() || !way_) return false;
+    constexpr double much = 1.5;
+    const double rate = std::abs(dot(row_of(goal.held, goal.to, system_, at_).form, *way_));
+    return length > much * std::max(foreseen, std::abs(goal.to - goal.from) / rate);
+  }
+
   // A step was found: first what lies between, then the step itself. False: it is too long.
-  bool take(const Goal& goal, const Configuration& next, int iterations) {
+  bool take(const Goal& goal, const Configuration& next, int iterations, double foreseen) {
     const Configuration from = at_;
     const double rate = rate_.value_or(way_->load_factor);
-    const std::optional<int> count = count_;
+    std::optional<int> count = count_;
     const std::optional<Change> way_before = way_, last_before = last_;
     last_ = difference(from, next);
     at_ = next;
     look();
     const double length = std::sqrt(dot_u(*last_, *last_));
-    const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
-    if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
-        (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
+    const auto too_long = [&] {
       at_ = from;
       way_ = way_before;
       last_ = last_before;
       return false;
+    };
+    if (jumped(goal, length, foreseen)) return too_long();
+    const bool too_curved = way_ && dot_u(*way_, *way_before) < 0.5;
+    if (length_ > options_.smallest_step * first_length() * cut * cut && way_ &&
+        (too_curved || turns_twice(last_->load_factor, length, rate, way_->load_factor))) {
+      return too_long();
     }
     if (way_ && rate * way_->load_factor < 0) {
       const double beyond = way_->load_factor;
       const std::optional<int> count_beyond = count_ahead_;
       if (locate_limit(goal, from, next, rate, beyond)) {
-        rate_ = beyond;
-        if (count && count_beyond) count_ = *count + (*count_beyond > *count ? 1 : -1);
-        if (end_between(from)) {
+        if (count && count_beyond) *count += *count_beyond > *count ? 1 : -1;
+        const CriticalPoint limit{CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1};
+        const Change left = difference(at_, next);
+        const End end = end_between(from);
+        if (end == End::missed) return too_long();
+        if (end == End::found) {
+          rate_ = beyond;
+          count_ = count;
           finish(iterations);
-        } else {
-          result_.critical.push_back({CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1});
-          accept(0, false);
+          return true;
         }
-        return true;
+        result_.critical.push_back(limit);
+        if (dot_u(left, left) > sliver * sliver * length * length) {
+          rate_ = beyond;
+          count_ = count;
+          accept(0, false);
+          return true;
+        }
       }
       stand_at(from, next);
     }
-    const bool ends = end_between(from);
+    const End reached = end_between(from);
+    if (reached == End::missed) return too_long();
     if (way_ && count && count_ahead_ && *count != *count_ahead_ && !options_.only_looking) {
       const Configuration end = at_;
       Goal way = goal;
@@ -295,7 +382,7 @@ private:
     }
     rate_ = way_ ? std::optional<double>(way_->load_factor) : std::nullopt;
     count_ = count_ahead_;
-    if (ends) {
+    if (reached == End::found) {
       finish(iterations);
       return true;
     }
@@ -327,7 +414,8 @@ private:
   void accept(int iterations, bool end_of_part) {
     if (!options_.only_looking) system_.accept_history();
     ++result_.steps;
-    result_.held = held_quantity();
+    // an arc from where it is has no direction: the last one has
+    result_.held = is_arc() ? Held(HeldArc{moved(system_, at_, -1.0 * *last_).positions}) : held_quantity();
     const Step step{result_.steps, at_.load_factor, iterations, end_of_part};
     if (accepted_ && accepted_(step, at_) == Verdict::stop) result_.end = PathEnd::stopped;
   }
@@ -403,10 +491,13 @@ private:
     }
   }
 
-  // Arc length: whether a goal lies between `from` and the new state; then the first one becomes the new state.
-  bool end_between(const Configuration& from) {
+  enum class End : std::uint8_t { none, found, missed };
+
+  // Arc length: whether a goal lies between `from` and the new state; then the first one becomes the new state. Missed:
+  // it is passed, but not found from here.
+  End end_between(const Configuration& from) {
     const auto* arc = std::get_if<ArcLengthPath>(&control_);
-    if (arc == nullptr) return false;
+    if (arc == nullptr) return End::none;
     std::optional<double> fallen;
     if (arc->after_peak) {
       for (const CriticalPoint& point : result_.critical) {
@@ -441,12 +532,15 @@ private:
         which = i;
       }
     }
-    if (nearest > 1) return false;
+    if (nearest > 1) return End::none;
     Configuration end = between(from, at_, nearest);
     const auto& [goal, held] = goals[which];
-    // not found: it was passed, good enough as an end
-    stand_at(from, newton_.solve(end, held, *goal, options_.max_iterations, {}).converged ? end : Configuration(at_));
-    return true;
+    const Change step = difference(from, at_);
+    const bool found = newton_.solve(end, held, *goal, options_.max_iterations, {}).converged;
+    const double part = dot_u(difference(from, end), step) / dot_u(step, step);
+    if (!found || part < -sliver || part > 1 + sliver) return End::missed; // or another branch has it too
+    stand_at(from, end);
+    return End::found;
   }
 
   System& system_;

@@ -156,8 +156,10 @@ Newton::Outcome Newton::solve(Configuration& configuration, const Held& held, do
     const Row row = row_of(held, wanted, system_, configuration);
     outcome.iterations = number;
     outcome.residual = relative(balance);
+    // near 0 no better than moves at rounding level allow
+    const double held_rounding = 1e-13 * span * std::sqrt(dot_u(row.form, row.form));
     if (is_balanced(balance, options_.tolerance, last_move, span) &&
-        std::abs(row.residual) <= options_.tolerance * scale) {
+        std::abs(row.residual) <= std::max(options_.tolerance * scale, held_rounding)) {
       outcome.converged = true;
       return outcome;
     }

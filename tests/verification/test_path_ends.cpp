@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where paths begin, end and turn: goals at the start, beside limit points and at zero, flat starts, quantities that
+// turn back; several chambers under control.
+#include "solver/path/controlled_path.h"
+#include "tests/verification/pyramid.h"
+
+namespace {
+
+using namespace pneuma;
+using namespace pneuma::solver;
+using base::Index;
+using base::Vec3;
+using geometry::ElementType;
+using tests::Cushion;
+using tests::model_of;
+using tests::Pyramid;
+
+const Pyramid pyramid;
+const double down_to_limit = pyramid.z0 - pyramid.z0 / std::numbers::sqrt3; // of its apex, m
+
+assembly::Model pressed_pyramid() {
+  return pyramid.model(pyramid.limit());
+}
+
+Index apex_of(const assembly::Model& model, std::size_t block = 0) {
+  for (const Index node : model.mesh.blocks[block].connectivity) {
+    const auto i = static_cast<std::size_t>(node);
+    if (model.fixed[3 * i] == 0 && model.mesh.nodes[i].head<2>().norm() < 1e-9) return node;
+  }
+  return -1;
+}
+
+path::DisplacementPath down(const assembly::Model& model, double until) {
+  return {path::displacement_of(apex_of(model), Vec3(0, 0, -1)), until};
+}
+
+struct Followed {
+  assembly::System system;
+  path::Newton newton;
+  assembly::Configuration at;
+  path::PathResult path;
+  std::vector<assembly::Configuration> states;
+  int ends_of_parts = 0;
+
+  Followed(const assembly::Model& model, const path::PathControl& control, int parts = 1,
+           const assembly::Configuration* from = nullptr)
+      : system(model, 1), newton(system, {}), at(from != nullptr ? *from : tests::start_of(model)) {
+    path::ControlledPathOptions options;
+    options.parts = parts;
+    options.max_steps = 120;
+    path = path::follow_control(
+        system, newton, at, control, options,
+        [&](const path::Step& step, const assembly::Configuration& c) {
+          states.push_back(c);
+          ends_of_parts += step.end_of_part ? 1 : 0;
+          return path::Verdict::go_on;
+        },
+        tests::tell);
+  }
+  bool reached() const { return path.end == path::PathEnd::reached; }
+  double height(std::size_t block = 0) const {
+    return at.positions[static_cast<std::size_t>(apex_of(system.model(), block))].z();
+  }
+  int limits() const {
+    return static_cast<int>(std::count_if(path.critical.begin(), path.critical.end(), [](const path::CriticalPoint& c) {
+      return c.kind == path::CriticalPoint::Kind::limit;
+    }));
+  }
+};
+
+assembly::Model flat_foil() {
+  Cushion c;
+  c.plan = geometry::Rectangle{1, 1};
+  c.divisions = {4, 4};
+  c.heights = {0};
+  c.base = true;
+  assembly::Model model = model_of(c, 0);
+  model.face_pressure = {{0, 400}, {0, 0}};
+  return model;
+}
+
+TEST(PathEnds, AGoalWhereThePathStandsIsReachedWithoutAStep) {
+  const assembly::Model model = pressed_pyramid();
+  assembly::System system(model, 1);
+  assembly::Configuration start = tests::start_of(model);
+  system.evaluate(start, true);
+  for (const path::PathControl& control :
+       {path::PathControl(down(model, 0)), path::PathControl(path::VolumePath{0, system.chamber_volume(0)})}) {
+    const Followed f(model, control);
+    EXPECT_TRUE(f.reached()) << f.path.reason;
+    EXPECT_EQ(f.path.steps, 0);
+  }
+}
+
+TEST(PathEnds, AFlatFoilMeetsEveryPartHoweverSmall) {
+  for (const int parts : {1, 5, 40}) { // parts shorter than the first step too
+    const Followed f(flat_foil(), path::LargestDisplacementPath{0, 0.05}, parts);
+    ASSERT_TRUE(f.reached()) << f.path.reason;
+    EXPECT_EQ(f.ends_of_parts, parts);
+    EXPECT_NEAR(f.height(), 0.05, 1e-10);
+  }
+}
+
+TEST(PathEnds, AnArcFromAFlatFoilEndsWithinItsFirstStep) {
+  path::ArcLengthPath load, move;
+  load.load_factor = 0.05;
+  move.displacement = 0.005;
+  const Followed by_load(flat_foil(), load), by_move(flat_foil(), move);
+  ASSERT_TRUE(by_load.reached()) << by_load.path.reason;
+  EXPECT_NEAR(by_load.at.load_factor, 0.05, 1e-10);
+  ASSERT_TRUE(by_move.reached()) << by_move.path.reason;
+  EXPECT_NEAR(by_move.height(), 0.005, 1e-11);
+}
+
+TEST(PathEnds, ALoadJustBelowTheLimitIsMetBeforeTheLimitPoint) {
+  for (const double below : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    path::ArcLengthPath arc;
+    arc.load_factor = 1 - below;
+    const Followed f(pressed_pyramid(), arc);
+    ASSERT_TRUE(f.reached()) << f.path.reason;
+    EXPECT_NEAR(f.at.load_factor, 1 - below, 1e-9);
+    EXPECT_EQ(f.limits(), 0) << below;
+    EXPECT_NEAR(pyramid.pressure(f.height()), -(1 - below) * pyramid.limit(), 1e-8 * pyramid.limit());
+  }
+}
+
+TEST(PathEnds, ALimitPointBesideTheEndOfAPartIsFoundOnce) {
+  const assembly::Model model = pressed_pyramid();
+  for (const double beside : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6}) {
+    const Followed f(model, down(model, 2 * (down_to_limit + beside)), 2);
+    ASSERT_TRUE(f.reached()) << beside << ": " << f.path.reason;
+    EXPECT_EQ(f.ends_of_parts, 2);
+    ASSERT_EQ(f.limits(), 1) << beside;
+    EXPECT_NEAR(f.path.critical[0].load_factor, 1, 1e-9);
+  }
+}
+
+TEST(PathEnds, AnArcStartsFromALimitPoint) {
+  const assembly::Model model = pressed_pyramid();
+  for (const double beside : {0.0, 1e-9, -1e-9, 1e-5, -1e-5}) {
+    const Followed at_limit(model, down(model, down_to_limit + beside));
+    path::ArcLengthPath arc;
+    arc.load_factor = -0.5; // lies ahead whichever way it goes
+    const Followed f(model, arc, 1, &at_limit.at);
+    ASSERT_TRUE(f.reached()) << beside << ": " << f.path.reason;
+    EXPECT_NEAR(pyramid.pressure(f.height()), 0.5 * pyramid.limit(), 1e-7 * pyramid.limit());
+    EXPECT_LT(std::abs(f.height()), 1.5 * pyramid.z0); // no branch but the nearest
+  }
+}
+
+TEST(PathEnds, QuantitiesEndAtZeroToo) {
+  const assembly::Model model = pressed_pyramid();
+  const Followed flat(model, path::VolumePath{0, 0});
+  ASSERT_TRUE(flat.reached()) << flat.path.reason;
+  EXPECT_NEAR(flat.height(), 0, 1e-12);
+  const Followed bent(model, down(model, 0.02));
+  const Followed back(model, path::LargestDisplacementPath{0, 0}, 1, &bent.at);
+  ASSERT_TRUE(back.reached()) << back.path.reason;
+  EXPECT_NEAR(back.height(), pyramid.z0, 1e-12);
+  EXPECT_NEAR(back.at.load_factor, 0, 1e-9);
+}
+
+TEST(PathEnds, ADisplacementThatTheLoadDoesNotMoveIsRefused) {
+  const assembly::Model model = pressed_pyramid();
+  const Followed f(model, path::DisplacementPath{path::displacement_of(apex_of(model), Vec3(1, 0, 0)), 0.01});
+  EXPECT_EQ(f.path.end, path::PathEnd::stuck);
+  EXPECT_NE(f.path.reason.find("does not move with the load"), std::string::npos) << f.path.reason;
+}
+
+TEST(PathEnds, AnArcHoldsWhatTheLoadDoesNot) {
+  path::ArcLengthPath arc;
+  arc.displacement = 0.07; // between the limit points
+  Followed f(pressed_pyramid(), arc);
+  ASSERT_TRUE(f.reached() && f.path.held);
+  const path::Row row = path::row_of(*f.path.held, 0, f.system, f.at);
+  const path::Stability count = f.newton.tangent().stability(f.at, &row);
+  EXPECT_EQ(count.load_held, 1);
+  EXPECT_EQ(count.control_held, 0);
+}
+
+// Von Mises' truss behind a spring: a soft pyramid is pushed onto thin air above a stiff one. With p of the stiff one
+// at the height z, Boyle's law (p + p_amb) 4/3 (upper - z) = p_amb V0 gives the upper apex, which goes back while the
+// stiff one snaps through.
+TEST(PathEnds, AQuantityThatSnapsBackIsNamedAndAnArcPasses) {
+  constexpr double ambient = 500, gap = 0.2, softer = 1e5;
+  Cushion c;
+  c.plan = geometry::Rectangle{2, 2};
+  c.element = ElementType::T3;
+  c.divisions = {2, 2};
+  c.heights = {pyramid.z0 + gap, pyramid.z0};
+  assembly::Model model = model_of(c, 0);
+  model.foils[0]->law = material::StVenantKirchhoff{pyramid.E / softer, pyramid.nu};
+  const double volume = 4.0 / 3 * gap;
+  model.chambers[0].gas = chamber::Closed{1, ambient, volume, 1, 1, ambient, ambient};
+  model.face_pressure = {{0, -pyramid.limit()}, {0, 0}};
+
+  const Followed held(model, down(model, 0.3));
+  EXPECT_EQ(held.path.end, path::PathEnd::stuck);
+  EXPECT_NE(held.path.reason.find("the controlled quantity turns back near"), std::string::npos) << held.path.reason;
+  path::ArcLengthPath arc;
+  arc.displacement = 0.22;
+  arc.block = 1;
+  const Followed f(model, arc);
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  EXPECT_EQ(f.limits(), 2);
+  double back = 0, lowest = 1; // of the upper apex
+  for (const assembly::Configuration& s : f.states) {
+    const double upper = s.positions[static_cast<std::size_t>(apex_of(model, 0))].z();
+    const double lower = s.positions[static_cast<std::size_t>(apex_of(model, 1))].z();
+    const double p = -pyramid.pressure(lower);
+    EXPECT_NEAR(s.pressures[0], p, 1e-7 * pyramid.limit());
+    EXPECT_NEAR(upper, lower + 3.0 / 4 * ambient * volume / (ambient + p), 1e-9);
+    lowest = std::min(lowest, upper);
+    back = std::max(back, upper - lowest);
+  }
+  EXPECT_GT(back, 0.01);
+}
+
+TEST(PathEnds, SizesFrom1mmTo100mTakeTheSameSteps) {
+  for (const double size : {1e-3, 1.0, 100.0}) {
+    Pyramid scaled;
+    scaled.a *= size;
+    scaled.z0 *= size;
+    scaled.h *= size;
+    path::ArcLengthPath arc;
+    arc.load_factor = 1.3;
+    const Followed f(scaled.model(scaled.limit()), arc);
+    ASSERT_TRUE(f.reached()) << f.path.reason;
+    EXPECT_EQ(f.path.steps, 9) << size;
+    EXPECT_EQ(f.limits(), 2);
+    double lowest = 0;
+    for (const Vec3& x : f.at.positions) lowest = std::min(lowest, x.z());
+    EXPECT_NEAR(scaled.pressure(lowest), -1.3 * scaled.limit(), 1e-7 * scaled.limit());
+  }
+}
+
+// --- several chambers
+// -------------------------------------------------------------------------------------------------
+
+TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
+  Cushion c;
+  c.plan = geometry::Rectangle{2, 2};
+  c.divisions = {4, 4};
+  c.heights = {0.15, 0.03, -0.1};
+  assembly::Model model = model_of(c, 0);
+  for (assembly::Chamber& chamber : model.chambers) chamber.gas = chamber::Regulated{0, 300};
+  model.face_pressure = {{0, 0}, {0, 20}, {0, 0}}; // keeps the middle foil taut
+  const tests::Solved blown(model);
+  ASSERT_TRUE(blown.converged()) << blown.path.reason;
+  chamber::Closed gas = tests::closed_now(blown, 0, 101325, 1.4);
+  gas.volume0 += blown.system.chamber_volume(1);
+  for (assembly::Chamber& chamber : model.chambers) chamber.gas = gas;
+  model.chambers[1].connected_to = 0;
+  model.face_pressure = {{0, -500}, {20, 20}, {0, 0}};
+  assembly::Configuration from = blown.at;
+  from.load_factor = 0;
+  for (const auto& [chamber, part] : {std::pair<Index, double>{0, 0.98}, {1, 1.02}}) {
+    const Followed f(model, path::VolumePath{chamber, part * blown.system.chamber_volume(chamber)}, 1, &from);
+    ASSERT_TRUE(f.reached()) << f.path.reason;
+    model.face_pressure[0][1] = -500 * f.at.load_factor;
+    const tests::Solved same(model, from);
+    model.face_pressure[0][1] = -500;
+    ASSERT_TRUE(same.converged()) << same.path.reason;
+    EXPECT_EQ(f.at.pressures[0], f.at.pressures[1]);
+    EXPECT_NEAR(f.at.pressures[0], same.at.pressures[0], 1e-6 * same.at.pressures[0]);
+    EXPECT_NEAR(f.system.chamber_volume(1 - chamber), same.system.chamber_volume(1 - chamber), 1e-8);
+  }
+}
+
+TEST(PathEnds, APrescribedVolumeIsDrivenByArcAndByItsOwnControlAlike) {
+  Cushion c;
+  c.plan = geometry::Rectangle{2, 2};
+  c.divisions = {4, 4};
+  c.heights = {0.1, -0.1};
+  assembly::Model model = model_of(c, 0);
+  model.chambers[0].gas = chamber::Regulated{0, 300};
+  const tests::Solved blown(model);
+  ASSERT_TRUE(blown.converged()) << blown.path.reason;
+  const double volume = blown.system.chamber_volume(0);
+  model.chambers[0].gas = chamber::PrescribedVolume{volume, 1.02 * volume};
+  assembly::Configuration from = blown.at;
+  from.load_factor = 0;
+  path::ArcLengthPath arc;
+  arc.load_factor = 1;
+  const tests::Solved by_load(model, from);
+  const Followed by_arc(model, arc, 1, &from), by_volume(model, path::VolumePath{0, 1.02 * volume}, 1, &from);
+  ASSERT_TRUE(by_load.converged() && by_arc.reached() && by_volume.reached());
+  EXPECT_NEAR(by_arc.at.pressures[0], by_load.at.pressures[0], 1e-6 * by_load.at.pressures[0]);
+  EXPECT_NEAR(by_volume.at.pressures[0], by_load.at.pressures[0], 1e-6 * by_load.at.pressures[0]);
+}
+
+} // namespace
