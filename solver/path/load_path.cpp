@@ -98,20 +98,24 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       outcome.converged = false;
       outcome.reason = "an element would be turned over";
     }
-    if (!outcome.converged) {
+    const std::string objection = outcome.converged && options.objection ? options.objection(trial) : "";
+    if (!outcome.converged || !objection.empty()) {
       const double reach = trial.load_factor - result.load_factor;
       length = reach / 4;
-      if (length < options.smallest_step) {
+      constexpr double near_enough = 1e-3; // to what is objected to
+      if (length < (objection.empty() ? options.smallest_step : std::max(options.smallest_step, near_enough))) {
         system.evaluate(configuration, true);
-        result.reason =
-            fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result.load_factor, outcome.reason);
+        result.end = objection.empty() ? PathEnd::stuck : PathEnd::stopped;
+        result.reason = objection.empty() ? fmt::format("no equilibrium found beyond load factor {:.6g}: {}",
+                                                        result.load_factor, outcome.reason)
+                                          : objection;
         if (const auto limit = limit_ahead(system, newton, configuration, reach)) {
           result.critical.push_back(*limit);
           result.critical.back().step = result.steps;
-          result.reason =
-              fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
-                          "volume, displacement or arc_length goes on",
-                          limit->load_factor, pressures_of(system, *limit));
+          result.reason = fmt::format(
+              "limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
+              "volume, displacement or arc_length goes on{}{}",
+              limit->load_factor, pressures_of(system, *limit), objection.empty() ? "" : "; behind it ", objection);
         }
         system.evaluate(configuration, true);
         return result;
