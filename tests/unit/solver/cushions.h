@@ -156,6 +156,16 @@ struct Solved {
     at.load_factor = 0;
     run(parts);
   }
+  // By Newton alone, from there with the whole load: foils may fold over on the way.
+  Solved(solver::assembly::Model model, const solver::assembly::Configuration& from,
+         const solver::path::NewtonOptions& options)
+      : system(std::move(model), 1), newton(system, options), at(from) {
+    at.load_factor = 1;
+    const solver::path::Newton::Outcome outcome =
+        newton.solve(at, [](const solver::path::Iteration& i) { tell(1, i); });
+    path.end = outcome.converged ? solver::path::PathEnd::reached : solver::path::PathEnd::stuck;
+    path.reason = outcome.reason;
+  }
   Solved(const Solved&) = delete;
   Solved& operator=(const Solved&) = delete;
 
