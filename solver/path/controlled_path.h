@@ -29,13 +29,15 @@ struct ArcLengthPath {
 using PathControl = std::variant<DisplacementPath, LargestDisplacementPath, VolumePath, ArcLengthPath>;
 
 struct ControlledPathOptions {
-  // Displacement and volume: the way is reported at so many equal parts. Arc length: every step ends a part.
+  // The way to the goal is reported at so many equal parts; arc length: to the first of displacement, volume, pressure
+  // and load factor that is given. Where only the fall behind a peak ends an arc, every step ends a part.
   int parts = 1;
   double first_step = 0.1; // of the way; arc length: of the load
   int max_steps = 500;
   int max_iterations = 15;     // of one step: beyond, it is better cut
   double smallest_step = 1e-6; // of the first step
   bool only_looking = false;   // the materials' history is not accepted
+  Objection objection;         // as in LoadPathOptions
 };
 
 // Follows the path with the load factor unknown, through limit points: the model's ramps are direction and scale of the

@@ -17,6 +17,7 @@ namespace {
 constexpr double shift_growth = 4;
 constexpr int max_shift_tries = 40;
 constexpr double no_stiffness = 1e-12; // smallest over largest pivot
+constexpr double unsafe = 1e-10;       // pivot, relative: no sign to count
 constexpr double whole_step = 0.9;     // of the line search
 constexpr double short_step = 0.3;
 
@@ -490,11 +491,12 @@ std::optional<Change> Tangent::along(const Configuration& configuration) {
 }
 
 // neg(K) + neg(-D - Q' K^-1 Q) - m with the borders of the air and of what is held; the foils' factors and `solved_`
-// are those of the tangent without tension.
-int Tangent::coupled_negative(const Configuration& configuration, const Row* held) {
+// are those of the tangent without tension. None where an eigenvalue is no more than rounding of what cancels in it.
+std::optional<int> Tangent::coupled_negative(const Configuration& configuration, const Row* held) {
   const auto laws = static_cast<Eigen::Index>(laws_.size());
   const Eigen::Index size = laws + (held != nullptr ? 1 : 0);
   MatX small = MatX::Zero(size, size);
+  VecX magnitude = VecX::Zero(size); // of what adds up to its diagonal
   int negative = 0;
   for (std::size_t i = 0; i < factors_.size(); ++i) {
     if (factors_[i].indefinite) negative += factors_[i].ldlt->negative_pivots();
@@ -505,16 +507,21 @@ int Tangent::coupled_negative(const Configuration& configuration, const Row* hel
       q.col(laws) = held->form.u[i];
       solution.col(laws) = solve(i, held->form.u[i]);
     }
-    small -= q.transpose() * solution;
+    const MatX part = q.transpose() * solution;
+    small -= part;
+    magnitude += part.diagonal().cwiseAbs();
   }
   for (Eigen::Index a = 0; a < laws; ++a) {
-    small(a, a) -= system_.gas_line(laws_[static_cast<std::size_t>(a)], configuration).compliance;
+    const double compliance = system_.gas_line(laws_[static_cast<std::size_t>(a)], configuration).compliance;
+    small(a, a) -= compliance;
+    magnitude[a] += compliance;
   }
   if (size == 0) return negative;
   VecX scale(size); // congruent: keeps the signs
-  for (Eigen::Index a = 0; a < size; ++a) scale[a] = small(a, a) != 0 ? 1 / std::sqrt(std::abs(small(a, a))) : 1.0;
+  for (Eigen::Index a = 0; a < size; ++a) scale[a] = magnitude[a] > 0 ? 1 / std::sqrt(magnitude[a]) : 1.0;
   small = (scale.asDiagonal() * (0.5 * (small + small.transpose())) * scale.asDiagonal()).eval();
   const VecX eigenvalues = Eigen::SelfAdjointEigenSolver<MatX>(small, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(eigenvalues.cwiseAbs().minCoeff() > unsafe)) return std::nullopt;
   return negative + static_cast<int>((eigenvalues.array() < 0).count()) - static_cast<int>(size);
 }
 
@@ -523,14 +530,13 @@ Stability Tangent::stability(const Configuration& configuration, const Row* held
 }
 
 Stability Tangent::count(const Configuration& configuration, const Row* held) {
-  constexpr double safe = 1e-10;
   for (Factor& factor : factors_) {
     if (factor.shift > 0 || factor.singular) return {};
-    if ((factor.indefinite ? factor.ldlt->pivot_ratio() : factor.cholesky.pivot_ratio()) < safe) return {};
+    if ((factor.indefinite ? factor.ldlt->pivot_ratio() : factor.cholesky.pivot_ratio()) < unsafe) return {};
   }
   Stability result;
   result.load_held = coupled_negative(configuration, nullptr);
-  result.control_held = held != nullptr ? coupled_negative(configuration, held) : *result.load_held;
+  result.control_held = held != nullptr ? coupled_negative(configuration, held) : result.load_held;
   return result;
 }
 

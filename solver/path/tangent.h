@@ -105,7 +105,7 @@ private:
   MatX solve(std::size_t foil, const MatX& right);
   double reference_tension(const Configuration& configuration) const;
   bool add_tension(std::size_t foil, int& factorizations);
-  int coupled_negative(const Configuration& configuration, const Row* held);
+  std::optional<int> coupled_negative(const Configuration& configuration, const Row* held);
   Change zero() const;
   Change residual(const Configuration& configuration) const; // right side: -R, r
   Change drive(const Configuration& configuration) const;    // F, G

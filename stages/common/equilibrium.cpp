@@ -132,7 +132,6 @@ private:
     if (const std::optional<path::PathControl> control = path_control(start_, drive_.control)) {
       path::ControlledPathOptions options;
       options.parts = parts;
-      if (parts > 1 && std::holds_alternative<path::ArcLengthPath>(*control)) options.first_step = 1.0 / parts;
       options.objection = objection;
       if (given.max_steps) options.max_steps = *given.max_steps;
       if (given.max_iterations) options.max_iterations = *given.max_iterations;

@@ -209,6 +209,38 @@ TEST(Tangent, AirCanHoldAFoilThatIsUnstableByItself) {
   }
 }
 
+TEST(Tangent, DoesNotCountWhereAirAndFoilsCancel) {
+  // a foil pushed half flat over air as stiff as the foil is unstable: the smallest compliance that does not hold it
+  Cushion c;
+  c.plan = geometry::Rectangle{2, 2};
+  c.element = ElementType::T3;
+  c.divisions = {2, 2};
+  c.heights = {0.1};
+  c.base = true;
+  assembly::Model model = model_of(c, 0);
+  model.chambers[0].gas = chamber::Closed{1, 1e5, 0.04, 1, 1, 1e5, 1e5};
+  const auto count_at = [&](double absolute) {
+    auto& air = std::get<chamber::Closed>(model.chambers[0].gas);
+    air.absolute0 = air.ambient_from = air.ambient_to = absolute;
+    assembly::System system(model, 1);
+    path::Work work;
+    path::Tangent tangent(system, work);
+    assembly::Configuration at = tests::start_of(model);
+    for (std::size_t i = 0; i < at.positions.size(); ++i) {
+      if (model.fixed[3 * i] == 0) at.positions[i].z() = 0.03;
+    }
+    system.evaluate(at, true);
+    const VecX q = system.volume_gradients(0).col(0);
+    const double stiffness = -1 / q.dot(tests::dense_tangent(system, 0).ldlt().solve(q)); // Pa/m3, what is missing
+    return std::pair(tangent.stability(at, nullptr).load_held, stiffness * system.chamber_volume(0));
+  };
+  const double critical = count_at(1e5).second;
+  ASSERT_GT(critical, 0);
+  EXPECT_EQ(count_at(0.999 * critical).first, 1);
+  EXPECT_EQ(count_at(1.001 * critical).first, 0);
+  EXPECT_FALSE(count_at(critical).first);
+}
+
 TEST(Tangent, LoadFactorDrivesWhatTheResidualsShow) {
   assembly::Model model = three_foils(900);
   std::get<chamber::Closed>(model.chambers[1].gas).kappa = 1;
