@@ -38,6 +38,16 @@ std::string pressures_of(const System& system, const CriticalPoint& point) {
   return text;
 }
 
+// With a tension field an element that is taut nowhere folds like cloth: that it lies upside down says nothing.
+bool is_folded(const assembly::FoilEquations& foil, Index element, const Configuration& at) {
+  if (!material::has_tension_field(foil.membrane.law)) return false;
+  const std::vector<element::PointState> states = element::point_states(foil.membrane, at.positions, {});
+  const auto points = static_cast<std::ptrdiff_t>(foil.membrane.reference.points);
+  const auto first = states.begin() + element * points;
+  return std::none_of(first, first + points,
+                      [](const element::PointState& p) { return p.surface == material::Surface::taut; });
+}
+
 } // namespace
 
 bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
@@ -54,7 +64,7 @@ bool turned_over(const System& system, const Configuration& before, const Config
       const geometry::Block& block = mesh.blocks[static_cast<std::size_t>(foil.block)];
       for (Index e = 0; e < mesh.element_count(block) && !turned; ++e) {
         const std::span<const Index> nodes = mesh.element_nodes(block, e);
-        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0;
+        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0 && !is_folded(foil, e, after);
       }
     }
   });
@@ -88,20 +98,24 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       outcome.converged = false;
       outcome.reason = "an element would be turned over";
     }
-    if (!outcome.converged) {
+    const std::string objection = outcome.converged && options.objection ? options.objection(trial) : "";
+    if (!outcome.converged || !objection.empty()) {
       const double reach = trial.load_factor - result.load_factor;
       length = reach / 4;
-      if (length < options.smallest_step) {
+      constexpr double near_enough = 1e-3; // to what is objected to
+      if (length < (objection.empty() ? options.smallest_step : std::max(options.smallest_step, near_enough))) {
         system.evaluate(configuration, true);
-        result.reason =
-            fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result.load_factor, outcome.reason);
+        result.end = objection.empty() ? PathEnd::stuck : PathEnd::stopped;
+        result.reason = objection.empty() ? fmt::format("no equilibrium found beyond load factor {:.6g}: {}",
+                                                        result.load_factor, outcome.reason)
+                                          : objection;
         if (const auto limit = limit_ahead(system, newton, configuration, reach)) {
           result.critical.push_back(*limit);
           result.critical.back().step = result.steps;
-          result.reason =
-              fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
-                          "volume, displacement or arc_length goes on",
-                          limit->load_factor, pressures_of(system, *limit));
+          result.reason = fmt::format(
+              "limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
+              "volume, displacement or arc_length goes on{}{}",
+              limit->load_factor, pressures_of(system, *limit), objection.empty() ? "" : "; behind it ", objection);
         }
         system.evaluate(configuration, true);
         return result;

@@ -41,10 +41,14 @@ struct PathResult {
 using Accept = std::function<Verdict(const Step&, const Configuration&)>;
 using Report = std::function<void(int step, const Iteration&)>;
 
+// Why a state that was found must not be accepted (foils that pass through each other); empty: it may.
+using Objection = std::function<std::string(const Configuration&)>;
+
 struct LoadPathOptions {
   int parts = 1;               // the path is reported at `parts` equal parts; between them steps are automatic
   double smallest_step = 1e-5; // of the load factor
   int max_steps = 100000;
+  Objection objection; // is answered by shorter steps; the path ends `stopped` a thousandth of the load before it
 };
 
 // Load control: from load factor 0 to 1, whole parts first, cut back by four on any failure, doubled after easy

@@ -80,7 +80,7 @@ public:
       : start_(start), drive_(std::move(drive)), begin_(drive_.model.mesh.nodes),
         folder_(start.arguments.out.parent_path()), system_(drive_.model, start.arguments.threads),
         newton_(system_, newton_options(start)), history_(folder_ / "history.csv"), series_(folder_),
-        contact_(drive_.model.mesh, start.workflow.site.up) {}
+        contact_check_(drive_.model.mesh, start.workflow.site.up) {}
 
   // Throws Error with exit code 5, after everything is written, where the path did not reach its end.
   void run() {
@@ -105,7 +105,18 @@ private:
     return options;
   }
 
+  // What to say of foils that pass through each other; empty: they do not.
+  std::string contact_at(const assembly::Configuration& c) {
+    const auto found = contact_check_.find(c.positions);
+    if (!found) return "";
+    return fmt::format("contact at load factor {:.4g} at ({:.4g}, {:.4g}, {:.4g}) m between `{}` and `{}`",
+                       c.load_factor, found->gap.at.x(), found->gap.at.y(), found->gap.at.z(), found->upper,
+                       found->lower);
+  }
+
   path::PathResult follow(assembly::Configuration& c) {
+    const path::Objection objection =
+        drive_.contact_stops ? [this](const assembly::Configuration& at) { return contact_at(at); } : path::Objection();
     const path::Accept accepted = [&](const path::Step& step, const assembly::Configuration& at) {
       return accept(step, at);
     };
@@ -122,12 +133,14 @@ private:
       path::ControlledPathOptions options;
       options.parts = parts;
       if (parts > 1 && std::holds_alternative<path::ArcLengthPath>(*control)) options.first_step = 1.0 / parts;
+      options.objection = objection;
       if (given.max_steps) options.max_steps = *given.max_steps;
       if (given.max_iterations) options.max_iterations = *given.max_iterations;
       return path::follow_control(system_, newton_, c, *control, options, accepted, report);
     }
     path::LoadPathOptions options;
     options.parts = parts;
+    options.objection = objection;
     if (given.max_steps) options.max_steps = *given.max_steps;
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
@@ -145,13 +158,9 @@ private:
                           c.pressures[static_cast<Eigen::Index>(i)], system_.chamber_volume(static_cast<Index>(i)));
     }
     base::say(line);
-    if (!contact_found_) {
-      if (const auto found = contact_.find(c.positions)) {
-        contact_found_ = fmt::format(
-            "contact at load factor {:.4g} at ({:.4g}, {:.4g}, {:.4g}) m between `{}` and `{}`", step.load_factor,
-            found->gap.at.x(), found->gap.at.y(), found->gap.at.z(), found->upper, found->lower);
-        if (!drive_.contact_stops) base::warn(*contact_found_ + " (goes on: contact is ignored)");
-      }
+    if (!drive_.contact_stops && contact_.empty()) {
+      contact_ = contact_at(c);
+      if (!contact_.empty()) base::warn(contact_ + " (goes on: contact is ignored)");
     }
     const std::vector<FoilResults> foils = results(c);
     write_history(step, c, foils);
@@ -165,7 +174,7 @@ private:
       io_ += clock.seconds();
     }
     stop_if_interrupted();
-    return contact_found_ && drive_.contact_stops ? path::Verdict::stop : path::Verdict::go_on;
+    return path::Verdict::go_on;
   }
 
   std::vector<FoilResults> results(const assembly::Configuration& c) const {
@@ -216,6 +225,11 @@ private:
     return state;
   }
 
+  static void warn(const std::string& warning, Summary& summary) {
+    base::warn(warning);
+    summary.append("warnings", warning);
+  }
+
   void summarize_path(const path::PathResult& result, Summary& summary) const {
     bool has_limit = false;
     for (std::size_t i = 0; i < result.critical.size(); ++i) {
@@ -264,9 +278,7 @@ private:
     const path::Stability stability = newton_.tangent().stability(c, held ? &*held : nullptr);
     const std::vector<FoilResults> foils = results(c);
     const bool reached = path_result.end == path::PathEnd::reached;
-    const std::string verdict = reached                                     ? "converged"
-                                : path_result.end == path::PathEnd::stopped ? *contact_found_
-                                                                            : path_result.reason;
+    const std::string verdict = reached ? "converged" : path_result.reason;
 
     State state = make_state(c, foils);
     state.provenance.converged = reached;
@@ -293,15 +305,24 @@ private:
       summary.set(key + "law", law_name(chamber.law));
     }
     summarize_path(path_result, summary);
+    for (const pipeline::state::Chamber& chamber : state.chambers) {
+      if (chamber.law != pipeline::state::GasLaw::closed || chamber.gauge_pressure >= 0) continue;
+      warn(fmt::format("the air shut in chamber `{}` is at {} Pa below the still air: it has lost its pressure",
+                       chamber.name, number(-chamber.gauge_pressure)),
+           summary);
+    }
     for (const FoilResults& r : foils) {
       summarize(r, summary);
       summarize_balance(r, summary);
+      if (r.wrinkled_area + r.slack_area > 1e-3) {
+        warn(fmt::format("foil `{}` is wrinkled on {:.1f} % of its area and slack on {:.1f} %", r.name,
+                         100 * r.wrinkled_area, 100 * r.slack_area),
+             summary);
+      }
       if (r.compressed_area > 1e-3) {
-        const std::string warning =
-            fmt::format("{:.1f} % of foil `{}` is in compression, up to {} MPa: a real foil wrinkles there",
-                        100 * r.compressed_area, r.name, number(r.compression / 1e6));
-        base::warn(warning);
-        summary.append("warnings", warning);
+        warn(fmt::format("{:.1f} % of foil `{}` is in compression, up to {} MPa: a real foil wrinkles there",
+                         100 * r.compressed_area, r.name, number(r.compression / 1e6)),
+             summary);
       }
     }
     const VecX forces = system_.support_forces();
@@ -342,7 +363,7 @@ private:
     summary.set("memory_peak", peak_memory());
     for (const std::string& text : drive_.modelled) summary.append("modelled", text);
     for (const std::string& text : drive_.not_modelled) summary.append("not_modelled", text);
-    if (contact_found_) summary.append("warnings", *contact_found_);
+    if (!contact_.empty()) summary.append("warnings", contact_);
     if (drive_.report) drive_.report(state, foils, summary);
     summary.write(folder_ / "summary.json");
     if (!reached) {
@@ -359,9 +380,9 @@ private:
   path::Newton newton_;
   History history_;
   pipeline::state::StepSeries series_;
-  ContactCheck contact_;
+  ContactCheck contact_check_;
   base::Progress progress_;
-  std::optional<std::string> contact_found_;
+  std::string contact_;           // the first one that was ignored
   double artificial_tension_ = 0; // N/m, largest in any tangent on the way
   double largest_load_ = 0;       // load factor
   int largest_load_step_ = 0;

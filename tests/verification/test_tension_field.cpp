@@ -188,7 +188,7 @@ Centre centre_of(const Solved& s) {
 
 TEST_P(TensionField, SquareAirbagRisesAsInTheLiterature) {
   std::vector<int> meshes = {8};
-  if (std::getenv("PNEUMA_LONG") != nullptr) meshes = {4, 8, 16};
+  if (std::getenv("PNEUMA_LONG") != nullptr) meshes = {8, 16};
   for (const int n : meshes) {
     Solved s(airbag(GetParam(), divisions(GetParam(), n), 0, 5000));
     const Centre centre = centre_of(s);
