@@ -267,6 +267,27 @@ TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
   }
 }
 
+TEST(PathEnds, ThreadsChangeNoBitOfAPath) {
+  Cushion c;
+  c.plan = geometry::Rectangle{2, 2};
+  c.divisions = {4, 4};
+  c.heights = {0.15, 0.03, -0.1};
+  assembly::Model model = model_of(c, 0);
+  for (assembly::Chamber& chamber : model.chambers) chamber.gas = chamber::Regulated{0, 300};
+  model.face_pressure = {{0, 0}, {0, 20}, {0, 0}};
+  std::vector<assembly::Configuration> ends;
+  for (const int threads : {1, 3}) {
+    assembly::System system(model, threads);
+    path::Newton newton(system, {});
+    ends.push_back(tests::start_of(model));
+    path::ArcLengthPath arc;
+    arc.load_factor = 1;
+    const path::PathResult path = path::follow_control(system, newton, ends.back(), arc, {}, {}, tests::tell);
+    ASSERT_EQ(path.end, path::PathEnd::reached) << path.reason;
+  }
+  for (std::size_t i = 0; i < ends[0].positions.size(); ++i) EXPECT_EQ(ends[0].positions[i], ends[1].positions[i]);
+}
+
 TEST(PathEnds, APrescribedVolumeIsDrivenByArcAndByItsOwnControlAlike) {
   Cushion c;
   c.plan = geometry::Rectangle{2, 2};
