@@ -471,7 +471,6 @@ private:
     if (is_arc() && lost(from)) return true;
     grow(goal, iterations);
     accept(iterations, goal.end_of_part || reached == End::part);
-    if (result_.end == PathEnd::stopped) return true;
     if (!is_arc() && goal.end_of_part && ++part_ > options_.parts) result_.end = PathEnd::reached;
     return true;
   }
@@ -509,7 +508,7 @@ private:
 
   void finish(int iterations) {
     accept(iterations, true);
-    if (result_.end != PathEnd::stopped) result_.end = PathEnd::reached;
+    result_.end = PathEnd::reached;
   }
 
   void grow(const Goal& goal, int iterations) {
@@ -524,7 +523,7 @@ private:
     // an arc from where it is has no direction: the last one has
     result_.held = is_arc() ? Held(HeldArc{moved(system_, at_, -1.0 * *last_).positions}) : held_quantity();
     const Step step{result_.steps, at_.load_factor, iterations, end_of_part};
-    if (accepted_ && accepted_(step, at_) == Verdict::stop) result_.end = PathEnd::stopped;
+    if (accepted_) accepted_(step, at_);
   }
 
   // The state a part of the way from `from` to `next`.

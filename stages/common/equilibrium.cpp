@@ -144,7 +144,7 @@ private:
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
 
-  path::Verdict accept(const path::Step& step, const assembly::Configuration& c) {
+  void accept(const path::Step& step, const assembly::Configuration& c) {
     if (std::abs(step.load_factor) > std::abs(largest_load_)) {
       largest_load_ = step.load_factor;
       largest_load_step_ = step.number;
@@ -173,7 +173,6 @@ private:
       io_ += clock.seconds();
     }
     stop_if_interrupted();
-    return path::Verdict::go_on;
   }
 
   std::vector<FoilResults> results(const assembly::Configuration& c) const {

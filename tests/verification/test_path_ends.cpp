@@ -54,7 +54,6 @@ struct Followed {
         [&](const path::Step& step, const assembly::Configuration& c) {
           states.push_back(c);
           ends_of_parts += step.end_of_part ? 1 : 0;
-          return path::Verdict::go_on;
         },
         tests::tell);
   }
