@@ -93,7 +93,7 @@ private:
     double start = 0;
   };
   std::vector<ArcGoal> arc_goals() const {
-    const ArcLengthPath& arc = std::get<ArcLengthPath>(control_);
+    const auto& arc = std::get<ArcLengthPath>(control_);
     const Farthest far = farthest(system_, arc.block, at_);
     std::vector<ArcGoal> goals;
     const auto add = [&](const std::optional<double>& value, const Held& held) {
