@@ -92,8 +92,9 @@ void place_linear_ticks(Ruler& ruler, bool to_ticks) {
     ruler.high = last * step;
   }
   const double largest = std::max(std::abs(ruler.low), std::abs(ruler.high));
-  for (double i = first; i <= last; ++i) {
-    const double value = i * step + 0.0; // no -0
+  const int count = static_cast<int>(last - first);
+  for (int i = 0; i <= count; ++i) {
+    const double value = (first + i) * step + 0.0; // no -0
     ruler.ticks.push_back({value, linear_label(value, step, largest)});
   }
 }
@@ -268,6 +269,7 @@ void write_curves(const Chart& chart, const Ruler& x, const Ruler& y, std::strin
   std::string marks;
   for (const Curve& curve : chart.curves) {
     std::vector<Vec2> points;
+    points.reserve(curve.points.size());
     for (const Vec2& point : curve.points) points.emplace_back(x.at(point.x()), y.at(point.y()));
     write_line(curve, points, out);
     add(marks, "<g fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"0.7\">\n", colour(curve.colour));

@@ -160,8 +160,10 @@ Option solver_options(const Options& more = {}) {
 }
 
 Option path_options() {
-  return solver_options({integer("max_steps", "after so many the path is given up; without it as many as it takes")
-                             .between(1, 100000, "from 1 to 100000")});
+  return solver_options(
+      {integer("max_steps",
+               "after so many the path is given up; without it after 500, under load control as many as it takes")
+           .between(1, 100000, "from 1 to 100000")});
 }
 
 Option control() {

@@ -236,8 +236,10 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
   double residual = 0;
   double internal = 0;
   double external = 0;
+  double frame = 0; // all internal forces, those that the frame holds too
   for (const FoilEquations& foil : foils_) {
     residual += foil.residual.squaredNorm();
+    frame += foil.internal.squaredNorm();
     for (const Index k : foil.coordinate) {
       internal += foil.internal[k] * foil.internal[k];
       external += foil.external[k] * foil.external[k];
@@ -249,7 +251,8 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
   for (const FoilEquations& foil : foils_) balance.rounding = std::hypot(balance.rounding, foil.stiffness);
   balance.rounding *= std::numeric_limits<double>::epsilon() * largest;
   balance.residual = std::sqrt(residual);
-  balance.force_scale = std::sqrt(std::max(internal, external));
+  constexpr double small = 1e-2; // of the frame's forces: where nothing but moved edges stretches a foil
+  balance.force_scale = std::sqrt(std::max({internal, external, small * small * frame}));
   if (!std::isfinite(balance.residual)) return {false, "the forces are not finite"};
   for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
     const chamber::GasLine line = gas_line(static_cast<Index>(c), configuration);

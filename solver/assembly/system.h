@@ -41,7 +41,7 @@ struct Balance {
   bool possible = true;    // false: an element failed, a chamber's volume or absolute pressure is not positive
   const char* reason = ""; // why not possible
   double residual = 0;     // |internal - external| of the free unknowns, N
-  double force_scale = 0;  // the larger of |external| and |internal|, N; 0 where nothing acts on the free unknowns
+  double force_scale = 0;  // the largest of |external|, |internal| and a hundredth of the frame's forces, N; 0: none
   double rounding = 0;     // residual that a change of all positions in their last digit makes, N (needs a tangent)
   double gas = 0;          // largest relative error of a chamber's law
 };

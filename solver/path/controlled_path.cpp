@@ -39,7 +39,18 @@ public:
         report_(report) {}
 
   PathResult run() {
-    system_.evaluate(at_, true);
+    // e.g. strips that are welded, but not yet in balance with what the load factor of the start says
+    const Newton::Outcome balance = newton_.solve(at_);
+    if (!balance.converged) {
+      result_.reason = fmt::format("no equilibrium at the start: {}", balance.reason);
+      return std::move(result_);
+    }
+    if (nothing_drives()) {
+      result_.reason = "nothing drives the path: what is stated is what the start already has";
+      return std::move(result_);
+    }
+    begin_ = at_;
+    first_span_ = span();
     start_ = way_value();
     length_ = options_.first_step * std::abs(until() - start_);
     look();
@@ -48,6 +59,7 @@ public:
       result_.held = held_quantity();
       result_.end = PathEnd::reached; // it stands there
     }
+    if (is_arc()) look_at_goals();
     while (result_.end == PathEnd::stuck && result_.reason.empty()) {
       if (result_.steps >= options_.max_steps) {
         result_.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options_.max_steps,
@@ -64,6 +76,48 @@ public:
   }
 
 private:
+  bool nothing_drives() const {
+    for (const assembly::FoilEquations& foil : system_.foils()) {
+      if (foil.load_gradient.size() > 0 && foil.load_gradient.cwiseAbs().maxCoeff() > 0) return false;
+    }
+    for (std::size_t c = 0; c < system_.model().chambers.size(); ++c) {
+      if (system_.gas_line(static_cast<Index>(c), at_).drive != 0) return false;
+    }
+    return true;
+  }
+
+  // What ends an arc, beside the fall behind a peak, in the order in which the first one makes the parts.
+  struct ArcGoal {
+    double value = 0;
+    Held held;
+    double start = 0;
+  };
+  std::vector<ArcGoal> arc_goals() const {
+    const auto& arc = std::get<ArcLengthPath>(control_);
+    const Farthest far = farthest(system_, arc.block, at_);
+    std::vector<ArcGoal> goals;
+    const auto add = [&](const std::optional<double>& value, const Held& held) {
+      if (value) goals.push_back({*value, held, 0});
+    };
+    add(arc.displacement, displacement_of(far.node, far.move.norm() > 0 ? far.move.normalized() : Vec3(0, 0, 1)));
+    add(arc.volume, HeldVolume{arc.chamber});
+    add(arc.pressure, HeldPressure{arc.chamber});
+    add(arc.load_factor, HeldLoadFactor{});
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      goals[i].start = i < goal_starts_.size() ? goal_starts_[i] : value_of(goals[i].held, system_, at_);
+    }
+    return goals;
+  }
+
+  void look_at_goals() {
+    for (const ArcGoal& goal : arc_goals()) {
+      goal_starts_.push_back(goal.start);
+      if (std::abs(goal.value - goal.start) <= newton_.options().tolerance * std::abs(goal.start)) {
+        result_.end = PathEnd::reached; // it stands there
+      }
+    }
+  }
+
   bool is_arc() const { return std::holds_alternative<ArcLengthPath>(control_); }
 
   // Where the way of displacement or volume control ends.
@@ -139,11 +193,15 @@ private:
       Configuration next = moved(system_, at_, foreseen);
       const Newton::Outcome outcome = solve(next, *goal);
       std::string reason = outcome.reason;
+      bool objected = false;
       if (outcome.converged) {
         if (dot_u(difference(at_, next), *way_) <= 0) {
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
+        } else if (const std::string objection = objection_to(next); !objection.empty()) {
+          reason = objection;
+          objected = true;
         } else if (take(*goal, next, outcome.iterations, std::sqrt(dot_u(foreseen, foreseen)))) {
           return;
         } else {
@@ -152,7 +210,19 @@ private:
       }
       system_.evaluate(at_, true);
       length_ = std::abs(goal->to - goal->from) / cut;
+      constexpr double near_enough = 1e-2; // to what is objected to, of the first step
+      if (objected && length_ < near_enough * first_length()) {
+        result_.end = PathEnd::stopped;
+        result_.reason = reason;
+        return;
+      }
       if (length_ < *shortest) {
+        if (!last_ && result_.steps == 0 && !started_by_load_) { // where all is about to change (no stress yet)
+          started_by_load_ = true;
+          length_ = first_length();
+          way_.reset();
+          return;
+        }
         if (!is_arc() && turns_back_ahead(*goal)) {
           result_.reason = fmt::format("the controlled quantity turns back near {:.6g}, load factor {:.6g}: arc_length "
                                        "goes on",
@@ -164,6 +234,8 @@ private:
       }
     }
   }
+
+  std::string objection_to(const Configuration& at) const { return options_.objection ? options_.objection(at) : ""; }
 
   // Whether a short arc beyond the last accepted state leads to where the held quantity goes back.
   bool turns_back_ahead(const Goal& goal) {
@@ -211,7 +283,7 @@ private:
         first_arc_ = std::min(options_.first_step / rate * root_mean_square(system_, *way_), most_of_span * span());
         if (length_ == 0) length_ = first_arc_;
       }
-      return Goal{HeldArc{at_.positions}, 0, length_, true};
+      return Goal{HeldArc{at_.positions}, 0, length_, goal_starts_.empty()};
     }
     Goal goal{held_quantity(), way_value(), 0, false};
     const Row row = row_of(goal.held, goal.from, system_, at_);
@@ -222,6 +294,12 @@ private:
       result_.reason = fmt::format("the controlled quantity {} at {:.6g}, load factor {:.6g}: {}",
                                    rate < 0 ? "turns back" : "does not move with the load", goal.from, at_.load_factor,
                                    rate < 0 ? "arc_length goes on" : "control another one");
+      return std::nullopt;
+    }
+    if (!last_ && at_.load_factor == 0 && way_->load_factor < 0) {
+      result_.reason = fmt::format(
+          "the load leads from {:.6g} away from the goal, {:.6g}: turn the sign of the load, or set another goal",
+          start_, until());
       return std::nullopt;
     }
     // to the end of a part at most, without a sliver before it
@@ -249,20 +327,20 @@ private:
   void step_by_load() {
     double step = options_.first_step * (last_ && last_->load_factor < 0 ? -1 : 1);
     bool away = false;
+    const double standing = way_value();
     for (int tries = 0; tries < 16; ++tries, step /= cut) {
       Configuration next = at_;
       next.load_factor += step;
       const Newton::Outcome outcome = newton_.solve(next, [&](const Iteration& i) {
         if (report_) report_(result_.steps + 1, i);
       });
-      if (!outcome.converged) continue;
+      if (!outcome.converged || !objection_to(next).empty()) continue;
       if (!is_arc()) {
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;
         away = away || !forward;
         const bool beyond = (now - part_end()) * (until() - start_) > 0;
-        if (!forward || beyond ||
-            std::abs(now - way_value()) > std::max(length_, options_.smallest_step * first_length()))
+        if (!forward || beyond || std::abs(now - standing) > std::max(length_, options_.smallest_step * first_length()))
           continue;
       }
       const Configuration from = at_;
@@ -283,7 +361,7 @@ private:
       if (end == End::found) {
         finish(outcome.iterations);
       } else {
-        accept(outcome.iterations, is_arc());
+        accept(outcome.iterations, end == End::part || (is_arc() && goal_starts_.empty()));
       }
       return;
     }
@@ -355,10 +433,14 @@ private:
         const Change left = difference(at_, next);
         const End end = end_between(from);
         if (end == End::missed) return too_long();
-        if (end == End::found) {
-          rate_ = beyond;
-          count_ = count;
-          finish(iterations);
+        if (end != End::none) {
+          rate_ = last_->load_factor < 0 ? -1.0 : 1.0; // before the limit point
+          count_ = count_ahead_;
+          if (end == End::found) {
+            finish(iterations);
+          } else {
+            accept(iterations, true);
+          }
           return true;
         }
         result_.critical.push_back(limit);
@@ -386,10 +468,34 @@ private:
       finish(iterations);
       return true;
     }
+    if (is_arc() && lost(from)) return true;
     grow(goal, iterations);
-    accept(iterations, goal.end_of_part);
-    if (result_.end == PathEnd::stopped) return true;
+    accept(iterations, goal.end_of_part || reached == End::part);
     if (!is_arc() && goal.end_of_part && ++part_ > options_.parts) result_.end = PathEnd::reached;
+    return true;
+  }
+
+  // An arc that leads nowhere: back to where it began, or far beyond any cushion.
+  bool lost(const Configuration& from) {
+    const double size = span();
+    constexpr double far = 1e3;
+    const Change way = difference(begin_, at_);
+    const double moved_by = root_mean_square(system_, way);
+    farthest_ = std::max(farthest_, moved_by);
+    if (moved_by > far * first_span_) {
+      result_.reason =
+          fmt::format("the path runs away: at load factor {:.6g} the cushion is {:.3g} m large and no goal is "
+                      "reached",
+                      at_.load_factor, size);
+    } else if (from.load_factor * at_.load_factor < 0) {
+      const double part = from.load_factor / (from.load_factor - at_.load_factor);
+      constexpr double near = 0.02;
+      if (root_mean_square(system_, difference(begin_, between(from, at_, part))) < near * farthest_) {
+        result_.reason = "the path came back to where it began: it turned at a bifurcation, and no goal was reached";
+      }
+    }
+    if (result_.reason.empty()) return false;
+    stand_at(from, from);
     return true;
   }
 
@@ -402,7 +508,7 @@ private:
 
   void finish(int iterations) {
     accept(iterations, true);
-    if (result_.end != PathEnd::stopped) result_.end = PathEnd::reached;
+    result_.end = PathEnd::reached;
   }
 
   void grow(const Goal& goal, int iterations) {
@@ -417,7 +523,7 @@ private:
     // an arc from where it is has no direction: the last one has
     result_.held = is_arc() ? Held(HeldArc{moved(system_, at_, -1.0 * *last_).positions}) : held_quantity();
     const Step step{result_.steps, at_.load_factor, iterations, end_of_part};
-    if (accepted_ && accepted_(step, at_) == Verdict::stop) result_.end = PathEnd::stopped;
+    if (accepted_) accepted_(step, at_);
   }
 
   // The state a part of the way from `from` to `next`.
@@ -491,56 +597,67 @@ private:
     }
   }
 
-  enum class End : std::uint8_t { none, found, missed };
+  // Several eigenvalues that change at one place, perhaps a limit point's, are one point.
+  void add_bifurcation(const Configuration& at) {
+    constexpr double same = 1e-4;
+    if (!result_.critical.empty()) {
+      const CriticalPoint& last = result_.critical.back();
+      if (result_.steps + 1 - last.step <= 1 &&
+          std::abs(last.load_factor - at.load_factor) <= same * std::abs(at.load_factor)) {
+        return;
+      }
+    }
+    result_.critical.push_back({CriticalPoint::Kind::bifurcation, at.load_factor, at.pressures, result_.steps + 1});
+  }
 
-  // Arc length: whether a goal lies between `from` and the new state; then the first one becomes the new state. Missed:
-  // it is passed, but not found from here.
+  enum class End : std::uint8_t { none, part, found, missed };
+
+  // Arc length: whether a goal, or the end of a part on the way to the first one, lies between `from` and the new
+  // state; then the nearest becomes the new state. Missed: it is passed, but not found from here.
   End end_between(const Configuration& from) {
     const auto* arc = std::get_if<ArcLengthPath>(&control_);
     if (arc == nullptr) return End::none;
-    std::optional<double> fallen;
+    std::vector<ArcGoal> goals = arc_goals();
+    const std::size_t ends = goals.size();
+    if (ends > 0 && part_ < options_.parts) {
+      const ArcGoal& first = goals.front();
+      goals.push_back({first.start + (first.value - first.start) * part_ / options_.parts, first.held, first.start});
+    }
     if (arc->after_peak) {
+      std::optional<double> fallen;
       for (const CriticalPoint& point : result_.critical) {
         if (point.kind == CriticalPoint::Kind::limit && (!fallen || std::abs(point.load_factor) > std::abs(*fallen))) {
           fallen = point.load_factor;
         }
       }
-      if (fallen) *fallen *= *arc->after_peak;
+      if (fallen) goals.insert(goals.begin(), {*fallen * *arc->after_peak, HeldLoadFactor{}, 0});
     }
-    const Farthest far = farthest(system_, arc->block, at_);
-    const Vec3 direction = far.move.norm() > 0 ? far.move.normalized() : Vec3(0, 0, 1);
-    const std::pair<std::optional<double>, Held> goals[] = {{arc->load_factor, HeldLoadFactor{}},
-                                                            {fallen, HeldLoadFactor{}},
-                                                            {arc->pressure, HeldPressure{arc->chamber}},
-                                                            {arc->volume, HeldVolume{arc->chamber}},
-                                                            {arc->displacement, displacement_of(far.node, direction)}};
     double nearest = 2; // part of the step
-    std::size_t which = 0;
+    const ArcGoal* which = nullptr;
     Configuration before = from;
-    for (std::size_t i = 0; i < std::size(goals); ++i) {
-      const auto& [goal, held] = goals[i];
-      if (!goal) continue;
-      const bool needs_volume = std::holds_alternative<HeldVolume>(held);
+    for (const ArcGoal& goal : goals) {
+      const bool needs_volume = std::holds_alternative<HeldVolume>(goal.held);
       if (needs_volume) system_.evaluate(before, true);
-      const double a = value_of(held, system_, before);
+      const double a = value_of(goal.held, system_, before);
       if (needs_volume) system_.evaluate(at_, true);
-      const double b = value_of(held, system_, at_);
-      if (a == b || a == *goal || (a - *goal) * (b - *goal) > 0) continue;
-      const double part = (*goal - a) / (b - a);
+      const double b = value_of(goal.held, system_, at_);
+      if (a == b || a == goal.value || (a - goal.value) * (b - goal.value) > 0) continue;
+      const double part = (goal.value - a) / (b - a);
       if (part < nearest) {
         nearest = part;
-        which = i;
+        which = &goal;
       }
     }
-    if (nearest > 1) return End::none;
+    if (which == nullptr) return End::none;
     Configuration end = between(from, at_, nearest);
-    const auto& [goal, held] = goals[which];
     const Change step = difference(from, at_);
-    const bool found = newton_.solve(end, held, *goal, options_.max_iterations, {}).converged;
+    const bool found = newton_.solve(end, which->held, which->value, options_.max_iterations, {}).converged;
     const double part = dot_u(difference(from, end), step) / dot_u(step, step);
     if (!found || part < -sliver || part > 1 + sliver) return End::missed; // or another branch has it too
     stand_at(from, end);
-    return End::found;
+    const bool is_part = part_ < options_.parts && ends > 0 && which == &goals.back();
+    if (is_part) ++part_;
+    return is_part ? End::part : End::found;
   }
 
   System& system_;
@@ -553,6 +670,11 @@ private:
   PathResult result_;
   double start_ = 0, length_ = 0, first_arc_ = 0;
   int part_ = 1;
+  bool started_by_load_ = false;
+  Configuration begin_;                    // in equilibrium
+  double first_span_ = 0;                  // m, of the cushion there
+  double farthest_ = 0;                    // root mean square displacement so far, m
+  std::vector<double> goal_starts_;        // of an arc's goals
   std::optional<Change> way_;              // unit tangent of the path, along it
   std::optional<Change> last_;             // the last step
   std::optional<double> rate_;             // of the load along the path behind the last accepted state

@@ -29,20 +29,24 @@ struct ArcLengthPath {
 using PathControl = std::variant<DisplacementPath, LargestDisplacementPath, VolumePath, ArcLengthPath>;
 
 struct ControlledPathOptions {
-  // Displacement and volume: the way is reported at so many equal parts. Arc length: every step ends a part.
+  // The way to the goal is reported at so many equal parts; arc length: to the first of displacement, volume, pressure
+  // and load factor that is given. Where only the fall behind a peak ends an arc, every step ends a part.
   int parts = 1;
   double first_step = 0.1; // of the way; arc length: of the load
   int max_steps = 500;
   int max_iterations = 15;     // of one step: beyond, it is better cut
   double smallest_step = 1e-6; // of the first step
   bool only_looking = false;   // the materials' history is not accepted
+  Objection objection;         // as in LoadPathOptions
 };
 
 // Follows the path with the load factor unknown, through limit points: the model's ramps are direction and scale of the
 // load. Steps are predicted along the tangent; the way goes on in the direction it came from; the length of a step
 // follows the iterations of the last one (sqrt(4 / iterations), Ramm 1981) and is cut by four on any failure. From a
 // state without stiffness (flat, slack) the first step is one of load control. Where the load turns, the limit point is
-// found and made a step of its own; where the count of negative eigenvalues changes otherwise, the bifurcation.
+// found and made a step of its own, unless the step ends beside it; where the count of negative eigenvalues changes
+// otherwise, the bifurcation. A displacement or volume that is at its goal already takes no step; where it turns back
+// the path is stuck.
 // `configuration` starts in equilibrium at its load factor and ends as the last accepted one.
 PathResult follow_control(System& system, Newton& newton, Configuration& configuration, const PathControl& control,
                           const ControlledPathOptions& options, const Accept& accepted, const Report& report = {});

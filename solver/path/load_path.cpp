@@ -129,10 +129,7 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     if (to_goal) ++part_number;
     if (outcome.iterations <= easy_iterations) length = std::min(2 * length, part);
     const Step step{result.steps, result.load_factor, outcome.iterations, to_goal};
-    if (accepted && accepted(step, configuration) == Verdict::stop) {
-      result.end = PathEnd::stopped;
-      return result;
-    }
+    if (accepted) accepted(step, configuration);
   }
   result.end = PathEnd::reached;
   return result;

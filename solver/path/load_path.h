@@ -13,8 +13,6 @@ struct Step {
   bool end_of_part = false;
 };
 
-enum class Verdict : std::uint8_t { go_on, stop };
-
 enum class PathEnd : std::uint8_t { reached, stopped, stuck };
 
 // A point of the path where the tangent is singular.
@@ -38,7 +36,7 @@ struct PathResult {
   std::optional<Held> held;            // what the control held last, for the count of what is stable under it
 };
 
-using Accept = std::function<Verdict(const Step&, const Configuration&)>;
+using Accept = std::function<void(const Step&, const Configuration&)>;
 using Report = std::function<void(int step, const Iteration&)>;
 
 // Why a state that was found must not be accepted (foils that pass through each other); empty: it may.
@@ -52,7 +50,7 @@ struct LoadPathOptions {
 };
 
 // Load control: from load factor 0 to 1, whole parts first, cut back by four on any failure, doubled after easy
-// success. `accepted` sees every accepted step, with the system evaluated there, and may stop the path; `configuration`
+// success. `accepted` sees every accepted step, with the system evaluated there; `configuration`
 // ends as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report = {});

@@ -60,6 +60,10 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
     return outcome;
   }
   double last_move = span; // largest displacement of the last iteration's whole step, if no artificial tension acted
+  constexpr int round = 20;
+  int allowed = std::min(options_.patience, options_.max_iterations);
+  double best = std::numeric_limits<double>::infinity(); // residual so far, and when the round began
+  double best_before = 0;
   for (int number = 0;; ++number) {
     outcome.iterations = number;
     outcome.residual = relative(balance);
@@ -67,10 +71,15 @@ Newton::Outcome Newton::solve(Configuration& configuration, const std::function<
       outcome.converged = true;
       return outcome;
     }
-    if (number == options_.max_iterations) {
-      outcome.reason = "the iterations ran out";
-      return outcome;
+    best = std::min(best, outcome.residual);
+    if (number == allowed) { // more of them as long as they get somewhere
+      if (best > 0.1 * best_before || allowed >= options_.max_iterations) {
+        outcome.reason = "the iterations ran out";
+        return outcome;
+      }
+      allowed = std::min(allowed + round, options_.max_iterations);
     }
+    if ((allowed - number) % round == 0) best_before = best;
     if (!tangent_.factorize(configuration, Tangent::Repair::descent)) {
       outcome.reason = "no artificial tension makes the tangent positive definite";
       return outcome;

@@ -132,7 +132,6 @@ private:
     if (const std::optional<path::PathControl> control = path_control(start_, drive_.control)) {
       path::ControlledPathOptions options;
       options.parts = parts;
-      if (parts > 1 && std::holds_alternative<path::ArcLengthPath>(*control)) options.first_step = 1.0 / parts;
       options.objection = objection;
       if (given.max_steps) options.max_steps = *given.max_steps;
       if (given.max_iterations) options.max_iterations = *given.max_iterations;
@@ -145,7 +144,7 @@ private:
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
 
-  path::Verdict accept(const path::Step& step, const assembly::Configuration& c) {
+  void accept(const path::Step& step, const assembly::Configuration& c) {
     if (std::abs(step.load_factor) > std::abs(largest_load_)) {
       largest_load_ = step.load_factor;
       largest_load_step_ = step.number;
@@ -174,7 +173,6 @@ private:
       io_ += clock.seconds();
     }
     stop_if_interrupted();
-    return path::Verdict::go_on;
   }
 
   std::vector<FoilResults> results(const assembly::Configuration& c) const {

@@ -85,6 +85,20 @@ int run(int argc, char** argv) {
       drive.load_at_one = reached;
     }
   }
+  if (!std::holds_alternative<workflow::LoadControl>(settings.control.kind)) {
+    bool drives = false;
+    for (const auto& chamber : drive.model.chambers) {
+      const auto& ramp = std::get<solver::chamber::Regulated>(chamber.gas);
+      drives = drives || ramp.gauge_from != ramp.gauge_to;
+    }
+    if (!drives) {
+      throw base::InputError(
+          fmt::format("{}the pressures are those that the start already has: they are direction and scale of the path, "
+                      "so say others",
+                      common::place(start.workflow, fmt::format("stages.{}.gauge_pressure.{}", start.stage().id,
+                                                                drive.state.chambers.front().name))));
+    }
+  }
   drive.modelled.emplace_back("regulated air");
   if (from_strips) {
     drive.modelled.emplace_back("foils welded from flat strips: their shapes are the reference");

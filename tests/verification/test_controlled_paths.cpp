@@ -45,7 +45,6 @@ struct Followed {
         [&](const path::Step& step, const assembly::Configuration& c) {
           points.push_back(
               {step.load_factor, c.positions[static_cast<std::size_t>(apex)].z(), system.chamber_volume(0)});
-          return path::Verdict::go_on;
         },
         tests::tell);
   }
@@ -219,7 +218,6 @@ struct Blown {
         system, newton, at, control, options,
         [&](const path::Step&, const assembly::Configuration& c) {
           points.emplace_back(stretch_of(system.chamber_volume(0)), c.pressures[0]);
-          return path::Verdict::go_on;
         },
         tests::tell);
   }
@@ -278,8 +276,10 @@ TEST(Balloon, MooneyRivlinSphereFallsAndRisesAgain) {
   EXPECT_NEAR(limits[0], most, 1e-4 * most);
   EXPECT_NEAR(limits[1], least, 1e-4 * most);
   EXPECT_NEAR(b.points.back().second, 1.2 * most, 1e-9 * most);
-  std::printf("Mooney-Rivlin: %.6f, %.6f Pa (exact %.6f, %.6f), last stretch %.3f\n", limits[0], limits[1], most, least,
-              b.points.back().first);
+  std::printf("Mooney-Rivlin: %.6f, %.6f Pa (exact %.6f, %.6f), last stretch %.3f, %d steps, %d iterations, %d "
+              "factorisations\n",
+              limits[0], limits[1], most, least, b.points.back().first, b.path.steps, b.newton.work().iterations,
+              b.newton.work().factorizations);
 }
 
 TEST(Balloon, PressureControlStopsAtTheLimitPointAndNamesIt) {

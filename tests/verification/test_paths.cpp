@@ -154,7 +154,6 @@ Work work_of(const assembly::Model& model, int parts) {
           w.pressure.push_back(c.pressures[0]);
           w.volume.push_back(system.chamber_volume(0));
         }
-        return path::Verdict::go_on;
       },
       tests::tell);
   EXPECT_EQ(result.end, path::PathEnd::reached) << result.reason;

@@ -147,6 +147,24 @@ TEST_P(TensionField, OfALongSheetBetweenShearedEdgesIsWagnersAwayFromItsFreeEnds
   EXPECT_GT(middle, 0);
 }
 
+TEST_P(TensionField, OfAShortSheetWithFreeEndsIsFound) {
+  // three times as long as wide: slack corners everywhere, nothing but moved edges, and no smaller step of them
+  const Sheet sheet{1.2, 0.4, {900e6, 0.45}, 250e-6};
+  assembly::Model model = model_of(sheet, GetParam(), {divisions(GetParam(), 12), divisions(GetParam(), 4)});
+  hold(model, [&](const Vec3& x) {
+    const bool edge = same(x.y(), 0) || same(x.y(), sheet.width);
+    return std::array{edge, edge, edge};
+  });
+  for (std::size_t i = 0; i < model.mesh.nodes.size(); ++i) {
+    if (model.fixed[3 * i] != 0) model.mesh.nodes[i].x() += 0.01 * model.mesh.nodes[i].y();
+  }
+  Solved s(model);
+  ASSERT_TRUE(s.converged()) << s.path.reason;
+  std::printf("| %s | short sheet, free ends | slack %.3f | %d | %d |\n", name_of(GetParam()),
+              area_in(Surface::slack, s, 0), s.iterations(), s.newton.work().factorizations);
+  EXPECT_GT(area_in(Surface::wrinkled, s, 0), 0.9);
+}
+
 // One quarter of one foil of the square airbag of Contri and Schrefler (1988): diagonal 1.2 m, 0.6 mm, E 588 MPa,
 // nu 0.4; two foils welded along an edge that is free to move in the plane between them.
 assembly::Model airbag(ElementType element, int divisions, double from, double to) {
