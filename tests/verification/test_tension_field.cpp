@@ -249,7 +249,7 @@ TEST_P(TensionField, SquareAirbagRisesAsInTheLiterature) {
     assembly::Configuration start = start_of(model);
     start.positions = onto_finer(*coarse, model.mesh, intervals);
     path::NewtonOptions options;
-    options.max_iterations = 200; // folds move slowly: up to 113
+    options.max_iterations = options.patience = 200; // folds move slowly, past saddles: up to 113
     auto fine = std::make_unique<Solved>(model, start, options);
     ASSERT_TRUE(fine->converged()) << fine->path.reason;
     print(intervals, "coarser", *fine);
