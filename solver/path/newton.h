@@ -11,7 +11,7 @@ namespace pneuma::solver::path {
 struct NewtonOptions {
   double tolerance = 1e-9;    // |residual| / force scale; gas laws to the same relative error
   int max_iterations = 240;   // slack foils need many damped ones; taut cushions three to six
-  int patience = 80;          // after so many only while the residual falls tenfold in twenty
+  int patience = 120;         // after so many only while the residual falls tenfold in twenty
   int max_line_searches = 12; // evaluations in one line search
 };
 
