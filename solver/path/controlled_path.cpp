@@ -154,9 +154,11 @@ private:
     way_ = oriented(*way);
   }
 
-  // Along the last step; at first towards more load (arc length) or towards the goal.
+  // Along the last step; at first towards the goal, arc length towards more load if its goal is not less.
   Change oriented(const Change& way) {
     double sign = way.load_factor;
+    const auto* arc = std::get_if<ArcLengthPath>(&control_);
+    if (arc != nullptr && arc->load_factor && *arc->load_factor < at_.load_factor) sign = -sign;
     if (last_) {
       sign = dot_u(way, *last_);
     } else if (!is_arc()) {

@@ -182,6 +182,16 @@ TEST(PathEnds, APathStartsInEquilibriumWhateverItIsGiven) {
   EXPECT_NEAR(pyramid.pressure(f.height()), -0.65 * pyramid.limit(), 1e-7 * pyramid.limit());
 }
 
+TEST(PathEnds, AnArcTurnsTowardsALoadBelowItsStart) {
+  path::ArcLengthPath arc;
+  arc.load_factor = -0.5; // the pressure lifts the apex
+  const Followed f(pressed_pyramid(), arc);
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  EXPECT_EQ(f.limits(), 0);
+  EXPECT_GT(f.height(), pyramid.z0);
+  EXPECT_NEAR(pyramid.pressure(f.height()), 0.5 * pyramid.limit(), 1e-7 * pyramid.limit());
+}
+
 TEST(PathEnds, PathsThatLeadNowhereSaySo) {
   assembly::Model still = pressed_pyramid();
   still.face_pressure[0] = {0, 0};
