@@ -125,6 +125,16 @@ Farthest farthest(const System& system, Index block, const Configuration& config
   return result;
 }
 
+HeldDisplacement displacement_of(const Farthest& farthest) {
+  return displacement_of(farthest.node, farthest.move.norm() > 0 ? farthest.move.normalized() : Vec3(0, 0, 1));
+}
+
+double span_of(const Configuration& configuration) {
+  double span = 0;
+  for (const Vec3& x : configuration.positions) span = std::max(span, (x - configuration.positions.front()).norm());
+  return span;
+}
+
 double root_mean_square(const System& system, const Change& change) {
   return std::sqrt(dot_u(change, change) / free_nodes(system));
 }

@@ -43,6 +43,12 @@ struct Farthest {
 Farthest farthest(const System& system, Index block, const Configuration& configuration,
                   const Change* change = nullptr);
 
+// Its displacement along the way it went; upwards where it did not move.
+HeldDisplacement displacement_of(const Farthest& farthest);
+
+// Largest distance of a node from the first one, m: a size to measure moves against.
+double span_of(const Configuration& configuration);
+
 // One number for all nodes: sqrt(sum of squares / free nodes), m.
 double root_mean_square(const System& system, const Change& change);
 

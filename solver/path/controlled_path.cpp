@@ -50,7 +50,7 @@ public:
       return std::move(result_);
     }
     begin_ = at_;
-    first_span_ = span();
+    first_span_ = span_of(at_);
     start_ = way_value();
     length_ = options_.first_step * std::abs(until() - start_);
     look();
@@ -94,12 +94,11 @@ private:
   };
   std::vector<ArcGoal> arc_goals() const {
     const auto& arc = std::get<ArcLengthPath>(control_);
-    const Farthest far = farthest(system_, arc.block, at_);
     std::vector<ArcGoal> goals;
     const auto add = [&](const std::optional<double>& value, const Held& held) {
       if (value) goals.push_back({*value, held, 0});
     };
-    add(arc.displacement, displacement_of(far.node, far.move.norm() > 0 ? far.move.normalized() : Vec3(0, 0, 1)));
+    add(arc.displacement, displacement_of(farthest(system_, arc.block, at_)));
     add(arc.volume, HeldVolume{arc.chamber});
     add(arc.pressure, HeldPressure{arc.chamber});
     add(arc.load_factor, HeldLoadFactor{});
@@ -133,8 +132,7 @@ private:
     if (const auto* p = std::get_if<LargestDisplacementPath>(&control_)) {
       const Change* ahead = way_ ? &*way_ : nullptr;
       const Farthest now = farthest(system_, p->block, at_);
-      const Farthest found = now.move.norm() > 0 ? now : farthest(system_, p->block, at_, ahead);
-      return displacement_of(found.node, found.move.norm() > 0 ? found.move.normalized() : Vec3(0, 0, 1));
+      return displacement_of(now.move.norm() > 0 ? now : farthest(system_, p->block, at_, ahead));
     }
     if (const auto* p = std::get_if<VolumePath>(&control_)) return HeldVolume{p->chamber};
     return HeldArc{at_.positions};
@@ -271,18 +269,13 @@ private:
     return part_ >= options_.parts ? until() : start_ + (until() - start_) * part_ / options_.parts;
   }
 
-  double span() const {
-    double span = 0;
-    for (const Vec3& x : at_.positions) span = std::max(span, (x - at_.positions.front()).norm());
-    return span;
-  }
-
   std::optional<Goal> next_goal() {
     if (is_arc()) {
       if (first_arc_ == 0) {
         const double rate = std::max(std::abs(way_->load_factor), 1e-300);
         // at a limit point the load says nothing about lengths
-        first_arc_ = std::min(options_.first_step / rate * root_mean_square(system_, *way_), most_of_span * span());
+        first_arc_ =
+            std::min(options_.first_step / rate * root_mean_square(system_, *way_), most_of_span * span_of(at_));
         if (length_ == 0) length_ = first_arc_;
       }
       return Goal{HeldArc{at_.positions}, 0, length_, goal_starts_.empty()};
@@ -375,8 +368,7 @@ private:
 
   Held held_quantity_at(const Configuration& next) const {
     if (const auto* p = std::get_if<LargestDisplacementPath>(&control_)) {
-      const Farthest found = farthest(system_, p->block, next);
-      return displacement_of(found.node, found.move.norm() > 0 ? found.move.normalized() : Vec3(0, 0, 1));
+      return displacement_of(farthest(system_, p->block, next));
     }
     return held_quantity();
   }
@@ -479,7 +471,6 @@ private:
 
   // An arc that leads nowhere: back to where it began, or far beyond any cushion.
   bool lost(const Configuration& from) {
-    const double size = span();
     constexpr double far = 1e3;
     const Change way = difference(begin_, at_);
     const double moved_by = root_mean_square(system_, way);
@@ -488,7 +479,7 @@ private:
       result_.reason =
           fmt::format("the path runs away: at load factor {:.6g} the cushion is {:.3g} m large and no goal is "
                       "reached",
-                      at_.load_factor, size);
+                      at_.load_factor, span_of(at_));
     } else if (from.load_factor * at_.load_factor < 0) {
       const double part = from.load_factor / (from.load_factor - at_.load_factor);
       constexpr double near = 0.02;
@@ -597,19 +588,6 @@ private:
       count = count_high;
       start = high;
     }
-  }
-
-  // Several eigenvalues that change at one place, perhaps a limit point's, are one point.
-  void add_bifurcation(const Configuration& at) {
-    constexpr double same = 1e-4;
-    if (!result_.critical.empty()) {
-      const CriticalPoint& last = result_.critical.back();
-      if (result_.steps + 1 - last.step <= 1 &&
-          std::abs(last.load_factor - at.load_factor) <= same * std::abs(at.load_factor)) {
-        return;
-      }
-    }
-    result_.critical.push_back({CriticalPoint::Kind::bifurcation, at.load_factor, at.pressures, result_.steps + 1});
   }
 
   enum class End : std::uint8_t { none, part, found, missed };

@@ -45,9 +45,9 @@ struct ControlledPathOptions {
 // follows the iterations of the last one (sqrt(4 / iterations), Ramm 1981) and is cut by four on any failure. From a
 // state without stiffness (flat, slack) the first step is one of load control. Where the load turns, the limit point is
 // found and made a step of its own, unless the step ends beside it; where the count of negative eigenvalues changes
-// otherwise, the bifurcation. A displacement or volume that is at its goal already takes no step; where it turns back
-// the path is stuck.
-// `configuration` starts in equilibrium at its load factor and ends as the last accepted one.
+// otherwise, the bifurcation. A path that is at its goal already takes no step; where a held displacement or volume
+// turns back it is stuck. `configuration` is brought into equilibrium at its load factor first, and ends as the last
+// accepted one.
 PathResult follow_control(System& system, Newton& newton, Configuration& configuration, const PathControl& control,
                           const ControlledPathOptions& options, const Accept& accepted, const Report& report = {});
 

@@ -29,7 +29,7 @@ struct CriticalPoint {
 
 struct PathResult {
   PathEnd end = PathEnd::stuck;
-  std::string reason; // why stuck
+  std::string reason; // why stuck or stopped
   int steps = 0;
   double load_factor = 0;              // of the last good state
   std::vector<CriticalPoint> critical; // in their order
@@ -50,8 +50,8 @@ struct LoadPathOptions {
 };
 
 // Load control: from load factor 0 to 1, whole parts first, cut back by four on any failure, doubled after easy
-// success. `accepted` sees every accepted step, with the system evaluated there; `configuration`
-// ends as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
+// success. `accepted` sees every accepted step, with the system evaluated there; `configuration` ends as the last
+// accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report = {});
 

@@ -13,12 +13,6 @@ double relative(const assembly::Balance& b) {
   return b.residual == 0 ? 0.0 : b.residual / b.force_scale;
 }
 
-double span_of(const Configuration& configuration) {
-  double span = 0;
-  for (const Vec3& x : configuration.positions) span = std::max(span, (x - configuration.positions.front()).norm());
-  return span;
-}
-
 double largest(const Change& change) {
   double move = 0;
   for (const VecX& du : change.u) {

@@ -39,7 +39,7 @@ struct Row {
 
 // Numbers of negative eigenvalues; none where the count is not safe: a pivot within 1e-10 of zero (relative).
 struct Stability {
-  std::optional<int> load_held;    // gas borders only: below 0 nothing, 1 past a limit or bifurcation point
+  std::optional<int> load_held;    // gas borders only; 0: stable, 1: past a limit or bifurcation point
   std::optional<int> control_held; // all borders
 };
 

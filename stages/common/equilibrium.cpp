@@ -340,11 +340,10 @@ private:
       }
     };
     if (stability.load_held.value_or(0) > 0) {
-      const std::string warning =
+      warn(
           fmt::format("the end state is in equilibrium but not stable where the load is held: {} negative eigenvalue{}",
-                      *stability.load_held, *stability.load_held == 1 ? "" : "s");
-      base::warn(warning);
-      summary.append("warnings", warning);
+                      *stability.load_held, *stability.load_held == 1 ? "" : "s"),
+          summary);
     }
     count("stability.load_held", stability.load_held);
     count("stability.control_held", stability.control_held);

@@ -314,13 +314,19 @@ TEST(HardCases, AirHeatedByHalfAtOnce) {
   }
 }
 
-TEST(HardCases, CushionPushedInsideOutStandsOnTheOtherSide) {
-  // one curved foil, free of stress at a rise of 0.4 m, pushed down by 300 Pa: snaps through to its mirror image
+// one curved foil, free of stress at a rise of 0.4 m, pushed down by 300 Pa
+assembly::Model free_dome() {
   Cushion c = large();
   c.heights = {0.4};
   c.base = true;
   assembly::Model model = model_of(c, 0);
   model.face_pressure = {{0, -300}, {0, 0}};
+  return model;
+}
+
+TEST(HardCases, CushionPushedInsideOutStandsOnTheOtherSide) {
+  // snaps through to its mirror image
+  assembly::Model model = free_dome();
   Solved s(model);
   record("pushed inside out", s);
   ASSERT_TRUE(s.converged()) << s.path.reason;
@@ -332,11 +338,7 @@ TEST(HardCases, CushionPushedInsideOutStandsOnTheOtherSide) {
 TEST(HardCases, FreeDomePushedDownByItsMiddleStopsWithAReasonAndTheLastGoodState) {
   // a foil free of stress cannot carry compression at all: as soon as it is pushed it wrinkles, as finely as the mesh
   // can, and its middle comes up again (arcs go on there). The control must end where it turns, in equilibrium.
-  Cushion c = large();
-  c.heights = {0.4};
-  c.base = true;
-  assembly::Model model = model_of(c, 0);
-  model.face_pressure = {{0, -300}, {0, 0}};
+  assembly::Model model = free_dome();
   assembly::System system(model, 1);
   path::Newton newton(system, {});
   assembly::Configuration at = tests::start_of(model);

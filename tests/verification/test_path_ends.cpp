@@ -331,7 +331,7 @@ TEST(PathEnds, SizesFrom1mmTo100mTakeTheSameSteps) {
 // --- several chambers
 // -------------------------------------------------------------------------------------------------
 
-TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
+assembly::Model three_foils() {
   Cushion c;
   c.plan = geometry::Rectangle{2, 2};
   c.divisions = {4, 4};
@@ -339,6 +339,11 @@ TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
   assembly::Model model = model_of(c, 0);
   for (assembly::Chamber& chamber : model.chambers) chamber.gas = chamber::Regulated{0, 300};
   model.face_pressure = {{0, 0}, {0, 20}, {0, 0}}; // keeps the middle foil taut
+  return model;
+}
+
+TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
+  assembly::Model model = three_foils();
   const tests::Solved blown(model);
   ASSERT_TRUE(blown.converged()) << blown.path.reason;
   chamber::Closed gas = tests::closed_now(blown, 0, 101325, 1.4);
@@ -362,13 +367,7 @@ TEST(PathEnds, ConnectedChambersUnderVolumeControlStandWhereLoadControlLeads) {
 }
 
 TEST(PathEnds, ThreadsChangeNoBitOfAPath) {
-  Cushion c;
-  c.plan = geometry::Rectangle{2, 2};
-  c.divisions = {4, 4};
-  c.heights = {0.15, 0.03, -0.1};
-  assembly::Model model = model_of(c, 0);
-  for (assembly::Chamber& chamber : model.chambers) chamber.gas = chamber::Regulated{0, 300};
-  model.face_pressure = {{0, 0}, {0, 20}, {0, 0}};
+  const assembly::Model model = three_foils();
   std::vector<assembly::Configuration> ends;
   for (const int threads : {1, 3}) {
     assembly::System system(model, threads);

@@ -183,40 +183,45 @@ TEST(Tangent, CountsNegativeEigenvaluesLikeDenseMatrices) {
   }
 }
 
-TEST(Tangent, AirCanHoldAFoilThatIsUnstableByItself) {
-  // a pyramid with one free node, pushed half flat: alone it would snap through, but the air below it resists
+// One free node 0.1 m above the middle of a square, and the same pushed half flat.
+Cushion pyramid() {
   Cushion c;
   c.plan = geometry::Rectangle{2, 2};
   c.element = ElementType::T3;
   c.divisions = {2, 2};
   c.heights = {0.1};
   c.base = true;
+  return c;
+}
+assembly::Configuration half_flat(const assembly::Model& model) {
+  assembly::Configuration at = tests::start_of(model);
+  for (std::size_t i = 0; i < at.positions.size(); ++i) {
+    if (model.fixed[3 * i] == 0) at.positions[i].z() = 0.03;
+  }
+  return at;
+}
+
+TEST(Tangent, AirCanHoldAFoilThatIsUnstableByItself) {
+  // a pyramid with one free node, pushed half flat: alone it would snap through, but the air below it resists
+  const Cushion c = pyramid();
   for (const bool closed : {false, true}) {
     assembly::Model model = model_of(c, 0);
     if (closed) model.chambers[0].gas = chamber::Closed{1.4, 101325, 0.2 / 3, 1, 1, 101325, 101325};
     assembly::System system(model, 1);
     path::Work work;
     path::Tangent tangent(system, work);
-    assembly::Configuration at = tests::start_of(model);
-    for (std::size_t i = 0; i < at.positions.size(); ++i) {
-      if (model.fixed[3 * i] == 0) at.positions[i].z() = 0.03;
-    }
+    assembly::Configuration at = half_flat(model);
     system.evaluate(at, true);
     const path::Stability count = tangent.stability(at, nullptr);
     ASSERT_TRUE(count.load_held);
-    EXPECT_EQ(Eigen::SelfAdjointEigenSolver<MatX>(tests::dense_tangent(system, 0)).eigenvalues()[0] < 0, true);
+    EXPECT_LT(Eigen::SelfAdjointEigenSolver<MatX>(tests::dense_tangent(system, 0)).eigenvalues()[0], 0);
     EXPECT_EQ(*count.load_held, closed ? 0 : 1);
   }
 }
 
 TEST(Tangent, DoesNotCountWhereAirAndFoilsCancel) {
   // a foil pushed half flat over air as stiff as the foil is unstable: the smallest compliance that does not hold it
-  Cushion c;
-  c.plan = geometry::Rectangle{2, 2};
-  c.element = ElementType::T3;
-  c.divisions = {2, 2};
-  c.heights = {0.1};
-  c.base = true;
+  const Cushion c = pyramid();
   assembly::Model model = model_of(c, 0);
   model.chambers[0].gas = chamber::Closed{1, 1e5, 0.04, 1, 1, 1e5, 1e5};
   const auto count_at = [&](double absolute) {
@@ -225,10 +230,7 @@ TEST(Tangent, DoesNotCountWhereAirAndFoilsCancel) {
     assembly::System system(model, 1);
     path::Work work;
     path::Tangent tangent(system, work);
-    assembly::Configuration at = tests::start_of(model);
-    for (std::size_t i = 0; i < at.positions.size(); ++i) {
-      if (model.fixed[3 * i] == 0) at.positions[i].z() = 0.03;
-    }
+    assembly::Configuration at = half_flat(model);
     system.evaluate(at, true);
     const VecX q = system.volume_gradients(0).col(0);
     const double stiffness = -1 / q.dot(tests::dense_tangent(system, 0).ldlt().solve(q)); // Pa/m3, what is missing
