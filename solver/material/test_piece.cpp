@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/material/test_piece.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/QR>
@@ -107,10 +108,12 @@ TestPiece::TestPiece(const Law& law, double angle) : law_(law) {
   const double s = std::sin(angle);
   to_material_ << c * c, s * s, -c * s, s * s, c * c, c * s, 2 * c * s, -2 * c * s, c * c - s * s;
   state_.history.assign(static_cast<std::size_t>(history_components(law)), 0.0);
-  ask(Vec3::Zero(), 0, state_);
+  ask(Vec3::Zero(), 0, state_, status_);
+  status_ = Status::ok;
 }
 
-bool TestPiece::ask(const Vec3& strain, double dt, PieceState& answer) const {
+bool TestPiece::ask(const Vec3& strain, double dt, PieceState& answer, Status& failure) const {
+  failure = Status::failed;
   if (!(strain[0] > -0.5 && strain[1] > -0.5 && std::isfinite(strain[2]))) return false;
   Batch batch;
   batch.count = 1;
@@ -119,11 +122,15 @@ bool TestPiece::ask(const Vec3& strain, double dt, PieceState& answer) const {
   batch.old_history = state_.history.data();
   batch.new_history = history.data();
   batch.dt = dt;
-  if (evaluate(law_, batch) != -1) return false;
+  if (evaluate(law_, batch) != -1) {
+    failure = batch.status;
+    return false;
+  }
+  const Response& response = batch.response[0];
   answer.strain = strain;
-  answer.stress = to_material_.transpose() * batch.stress[0];
-  answer.tangent = to_material_.transpose() * batch.tangent[0] * to_material_;
-  answer.energy = batch.energy[0];
+  answer.stress = to_material_.transpose() * response.stress;
+  answer.tangent = to_material_.transpose() * response.tangent * to_material_;
+  answer.energy = response.energy;
   answer.thickness_stretch = thickness_stretch(law_, batch.strain[0], history.data());
   answer.history = std::move(history);
   return answer.stress.allFinite() && answer.tangent.allFinite();
@@ -131,20 +138,20 @@ bool TestPiece::ask(const Vec3& strain, double dt, PieceState& answer) const {
 
 // Natural monotonicity (Deuflhard 2004, Newton Methods for Nonlinear Problems, sec. 3.1): steps are compared, in the
 // units of strain, not residuals, whose rows have different ones.
-bool TestPiece::solve(const Control& control, const Vec3& held, double dt, PieceState& found) const {
-  if (!ask(state_.strain, dt, found)) return false;
+bool TestPiece::solve(const Control& control, const Vec3& held, double dt, PieceState& found) {
+  if (!ask(state_.strain, dt, found, status_)) return false;
   constexpr int enough = 50;
   constexpr double sharp = 1e-13, rounding = 1e-10; // of the strain: wanted; accepted where no step improves it
   for (int i = 0; i < enough; ++i) {
     const Mat3 slope = slope_of(control, found);
     const Vec3 step = smallest_solution(slope, held - held_by(control, found));
     const double size = step.norm();
-    const double scale = (found.strain + step).norm();
+    const double scale = std::max((found.strain + step).norm(), state_.strain.norm());
     PieceState next;
     double part = 1;
     bool better = false;
     for (; part > 1e-3 && !better; part /= 2) {
-      if (!ask(found.strain + part * step, dt, next)) continue;
+      if (!ask(found.strain + part * step, dt, next, status_)) continue;
       const double remaining = smallest_solution(slope, held - held_by(control, next)).norm();
       better = remaining <= (1 - 0.25 * part) * size;
     }
@@ -168,6 +175,7 @@ bool TestPiece::advance(const Control& control, double target, double duration) 
       found.time = state_.time + (next - done) * duration;
       state_ = std::move(found);
       done = next;
+      status_ = Status::ok;
       part *= 2;
     } else {
       part /= 2;

@@ -65,14 +65,18 @@ public:
 
   const PieceState& state() const { return state_; }
 
+  // ok, or what the law last refused on a way that was not reached: outside_data where a table ends there.
+  Status status() const { return status_; }
+
 private:
   // The law's answer at a strain, from the accepted history; axes of the piece.
-  bool ask(const Vec3& strain, double dt, PieceState& answer) const;
-  bool solve(const Control& control, const Vec3& held, double dt, PieceState& found) const;
+  bool ask(const Vec3& strain, double dt, PieceState& answer, Status& failure) const;
+  bool solve(const Control& control, const Vec3& held, double dt, PieceState& found);
 
   Law law_;
   Mat3 to_material_; // of strains
   PieceState state_;
+  Status status_ = Status::ok;
 };
 
 } // namespace pneuma::solver::material
