@@ -117,8 +117,13 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
     const int components = material::history_components(membrane.law);
     std::vector<PointState> states(membrane.reference.area.size());
     std::vector<double> scratch(static_cast<std::size_t>(std::max(components, 1)));
+    const std::span<const std::string_view> names = material::history_names(membrane.law);
     material::Batch one;
     one.count = 1;
+    const auto component = [&](std::string_view name) {
+      const auto which = std::ranges::find(names, name);
+      return which == names.end() ? 0.0 : one.old_history[which - names.begin()];
+    };
     one.new_history = scratch.data();
     for (std::size_t i = 0; i < states.size(); ++i) {
       const std::size_t element = i / static_cast<std::size_t>(points);
@@ -131,6 +136,9 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
       one.old_history = components > 0 ? history.data() + i * static_cast<std::size_t>(components) : nullptr;
       material::evaluate(membrane.law, one);
       state.stress = one.response[0].stress;
+      state.stored = one.response[0].energy;
+      state.plastic_strain = component(material::equivalent_plastic_strain);
+      state.dissipated = component(material::dissipated_energy);
       state.thickness_ratio = material::thickness_stretch(membrane.law, one.strain[0], one.old_history);
       const material::Relaxed relaxed = material::relaxed(membrane.law, one.strain[0], one.old_history);
       state.surface = relaxed.surface;

@@ -53,6 +53,9 @@ struct PointState {
   double thickness_ratio = 1; // current / nominal, of the foil itself
   material::Surface surface = material::Surface::taut;
   Vec3 strain = Vec3::Zero(); // Green-Lagrange (E11, E22, 2 E12) of the foil itself: wrinkles laid flat
+  double stored = 0;          // recoverable energy per reference volume, J/m3
+  double dissipated = 0;      // so far, J/m3
+  double plastic_strain = 0;  // equivalent, so far, -
 };
 
 // Deformation and stress at all points [element][point] as an accepted history leaves them, without time.
