@@ -86,16 +86,18 @@ public:
     polygon.corners = std::move(corners);
     const MatX A = shares(polygon.corners);
     if (A.colwise().norm().minCoeff() <= 0) return polygon; // a part without a point
+    // branches begin at their stresses, so that only the last one may be level; one that softens is a difference of two
     const Eigen::Index last = A.cols() - 1;
-    MatX with_softening(A.rows(), A.cols() + 1); // a last slope of either sign as a difference of two
-    with_softening << A, -A.col(last);
-    const VecX slopes = non_negative(softening_ ? with_softening : A, stress_);
+    const Eigen::Index softer = softening_ ? last - 1 : 0;
+    MatX both_ways(A.rows(), A.cols() + softer);
+    both_ways << A, -A.middleCols(1, softer);
+    const VecX slopes = non_negative(both_ways, stress_);
     polygon.slopes = slopes.head(A.cols());
-    if (softening_) polygon.slopes[last] -= slopes[last + 1];
-    // branches begin at their stresses: only the last may be level or fall
+    polygon.slopes.segment(1, softer) -= slopes.tail(softer);
     const double elastic = polygon.slopes[0];
-    if (!(polygon.slopes.head(last).minCoeff() > 0) || !(polygon.slopes.tail(last).maxCoeff() < elastic))
-      return polygon;
+    const double smallest =
+        softening_ ? polygon.slopes.head(last).cwiseAbs().minCoeff() : polygon.slopes.head(last).minCoeff();
+    if (!(elastic > 0 && smallest > 0 && polygon.slopes.tail(last).maxCoeff() < elastic)) return polygon;
     polygon.cost = (A * polygon.slopes - stress_).squaredNorm();
     return polygon;
   }
@@ -224,7 +226,7 @@ double HardeningFit::stress_at(double strain) const {
   double slope = youngs_modulus;
   double corner = 0; // strain and stress where the slope begins
   double stress = 0;
-  for (const Branch& branch : branches) {
+  for (const HardeningBranch& branch : branches) {
     const double next = corner + (branch.stress - stress) / slope;
     if (strain <= next) break;
     corner = next;

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/material/hardening.h"
+
 namespace pneuma::solver::material {
 
 // A point of a uniaxial test without unloading, in the measures of the law that is fitted: logarithmic strain and
@@ -16,15 +18,10 @@ struct CurvePoint {
   double weight = 1; // of the squared stress difference
 };
 
-struct Branch {
-  double stress = 0;  // at which it begins, Pa
-  double modulus = 0; // plastic: d stress / d plastic strain, Pa
-};
-
 struct HardeningFit {
-  double youngs_modulus = 0;    // Pa
-  std::vector<Branch> branches; // in order
-  double cost = 0;              // sum of weight x squared difference, Pa2
+  double youngs_modulus = 0;             // Pa
+  std::vector<HardeningBranch> branches; // plastic moduli
+  double cost = 0;                       // sum of weight x squared difference, Pa2
 
   double stress_at(double strain) const; // Pa
 };
@@ -32,9 +29,9 @@ struct HardeningFit {
 // The polygon through the origin with `branches` free corners that is nearest to the points, least squares: slopes by
 // non-negative least squares for given corners (Lawson and Hanson 1974), corners put in one by one where they help
 // most, then moved by Gauss-Newton (Muggeo 2003, Statistics in Medicine 22) and, where that ends, one by one. The curve
-// rises, less steeply than the elastic line; the last branch may be level and, with `softening`, fall. A polygon that
-// no move of a single corner betters; that none is better at all is not proved. Nothing where the points cannot carry
-// as many unknowns: fewer than 2 branches + 1 different strains above 0, or no such polygon.
+// rises, less steeply than the elastic line; the last branch may be level, those before it, with `softening`, fall. A
+// polygon that no move of a single corner betters; that none is better at all is not proved. Nothing where the points
+// cannot carry as many unknowns: fewer than 2 branches + 1 different strains above 0, or no such polygon.
 std::optional<HardeningFit> fit_hardening(std::span<const CurvePoint> points, int branches, bool softening = false);
 
 } // namespace pneuma::solver::material
