@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/material/hardening_fit.h"
+
 namespace pneuma::tests {
 namespace {
 
@@ -98,6 +100,53 @@ TEST(TestPiece, OneControlFollowsAnother) {
   EXPECT_NEAR(piece.state().nominal_stress()[0], piece.state().nominal_stress()[1], sharp * rubber.c1);
   ASSERT_TRUE(piece.advance(stresses({1, 1, 0}), 0));
   EXPECT_LT(piece.state().strain.norm(), sharp);
+}
+
+// thesis table 6.1
+const std::vector<HardeningBranch> etfe_branches = {{16e6, 160e6}, {27e6, 80e6}};
+const Elasticity etfe_elasticity{1100e6, 0.43};
+const Flow etfe_flow{*piecewise_linear(etfe_branches), {}};
+
+TEST(TestPiece, UniaxialPlasticFoilFollowsThePolygonOfItsBranches) {
+  const HardeningFit polygon{etfe_elasticity.youngs_modulus, etfe_branches, 0};
+  TestPiece small(J2{etfe_elasticity, etfe_flow}), large(Logarithmic{etfe_elasticity, etfe_flow});
+  for (int i = 1; i <= 60; ++i) {
+    const double stretch = 1 + 0.005 * i;
+    ASSERT_TRUE(small.advance(uniaxial(), stretch - 1));
+    ASSERT_TRUE(large.advance(uniaxial(), stretch - 1));
+    const double S = polygon.stress_at(0.5 * (stretch * stretch - 1));
+    const double kirchhoff = polygon.stress_at(std::log(stretch));
+    EXPECT_NEAR(small.state().nominal_stress()[0] / (stretch * S), 1, sharp) << i;
+    EXPECT_NEAR(large.state().nominal_stress()[0] / (kirchhoff / stretch), 1, sharp) << i;
+  }
+  // unloaded, the elastic strain is gone
+  const double plastic = large.state().logarithmic_strain()[0] - polygon.stress_at(std::log(1.3)) / 1100e6;
+  ASSERT_TRUE(large.advance(stresses({1, 0, 0}), 0));
+  EXPECT_NEAR(large.state().logarithmic_strain()[0], plastic, sharp);
+}
+
+TEST(TestPiece, AHeldStressCreepsAndAHeldStrainRelaxes) {
+  // Perzyna, epsilon 1, threshold 5 MPa: sigma = 5 MPa + K alpha + sigma_y mu dalpha/dt with K = 160 MPa; in the end
+  // creep comes to rest at alpha = (sigma - 5 MPa) / K, relaxation at sigma = 5 MPa + K alpha
+  const Flow flow{etfe_flow.hardening, {Overstress::perzyna, 100, 1, 5e6}};
+  const J2 law{etfe_elasticity, flow};
+  TestPiece creep(law), relaxation(law);
+  const Control tension = stresses({1, 0, 0});
+  ASSERT_TRUE(creep.advance(tension, 10e6));
+  const double elastic = creep.state().engineering_strain()[0];
+  ASSERT_TRUE(relaxation.advance(uniaxial(), elastic));
+  for (int i = 0; i < 200; ++i) {
+    const double before = creep.state().strain[0];
+    ASSERT_TRUE(creep.advance(tension, 10e6, 100));
+    ASSERT_TRUE(relaxation.advance(uniaxial(), elastic, 100));
+    EXPECT_GE(creep.state().strain[0], before);
+    EXPECT_NEAR(creep.state().nominal_stress()[0] / 10e6, 1, sharp);
+  }
+  const double alpha = creep.state().history[3];
+  EXPECT_NEAR(alpha, (creep.state().stress[0] - 5e6) / 160e6, 1e-9);
+  EXPECT_NEAR(relaxation.state().stress[0] / (5e6 + 160e6 * relaxation.state().history[3]), 1, 1e-9);
+  EXPECT_LT(relaxation.state().stress[0], 10e6);
+  EXPECT_DOUBLE_EQ(creep.state().time, 200 * 100);
 }
 
 TEST(TestPiece, ATensionFieldInTensionIsItsLaw) {
