@@ -33,6 +33,8 @@ public:
   std::vector<Problem> problems;
 
   Workflow build(const schema::Node& tree);
+  // Of a file of materials alone; those not used may hold laws that are not available.
+  std::map<std::string, Material> build_materials(const schema::Node& tree, const std::set<std::string>& used);
 
 private:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
@@ -48,6 +50,7 @@ private:
   // Names of materials that foils of the file use: a file may hold laws that are not available yet.
   static std::set<std::string> used_materials(const Value& root);
   void read_materials_file(const Value& path, const Value& root);
+  void add_materials(const schema::Node& tree, const std::set<std::string>& used);
   // Only what foils use belongs to the settings of a stage.
   void keep_used_materials();
   void read_cushion(const Value& cushion);

@@ -24,6 +24,7 @@ using schema::text_of;
 namespace {
 
 constexpr const char* base_wall = "base";
+constexpr const char* not_materials = "a file of materials is a map: NAME: {law: elastic, E: 900 MPa, nu: 0.45}";
 
 std::string folder_relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
   if (file.is_absolute() == folder.is_absolute()) {
@@ -148,9 +149,12 @@ void Builder::read_materials_file(const Value& path, const Value& root) {
   }
   if (tree.kind != NodeKind::map) {
     materials_known_ = false;
-    return fail(tree.mark, "a file of materials is a map: NAME: {law: elastic, E: 900 MPa, nu: 0.45}");
+    return fail(tree.mark, not_materials);
   }
-  const std::set<std::string> used = used_materials(root);
+  add_materials(tree, used_materials(root));
+}
+
+void Builder::add_materials(const Node& tree, const std::set<std::string>& used) {
   for (const schema::Entry& entry : tree.entries) {
     if (std::find(material_names_.begin(), material_names_.end(), entry.key) != material_names_.end()) {
       fail(entry.mark, fmt::format("the material `{}` is also in another file of materials; keep one", entry.key));
@@ -163,6 +167,15 @@ void Builder::read_materials_file(const Value& path, const Value& root) {
     const Value table = schema::check(materials_file_options(), one, "materials", context);
     for (const auto& [name, value] : table.members) add_material(name, value);
   }
+}
+
+std::map<std::string, Material> Builder::build_materials(const Node& tree, const std::set<std::string>& used) {
+  if (tree.kind == NodeKind::map) {
+    add_materials(tree, used);
+  } else {
+    fail(tree.mark, not_materials);
+  }
+  return std::move(workflow_.materials);
 }
 
 void Builder::keep_used_materials() {
