@@ -22,7 +22,8 @@ struct LeNurbs {
   double poissons_ratio = 0.5;
 
   bool outside(const Vec3& strain) const noexcept {
-    return !(table->domain.holds(strain[0], strain[1]) && std::abs(strain[2]) <= table->shear.knots.last());
+    return !(table->domain.holds(strain[0], strain[1]) &&
+             std::abs(strain[2]) <= table->shear.knots.last() + table_rounding);
   }
 
   Status evaluate(const Vec3& strain, const double*, double*, double, Response& response) const noexcept {

@@ -144,15 +144,15 @@ bool ask(const Law& law, const Vec3& strain, double time, Response& response) {
   return status == Status::ok && response.stress.allFinite();
 }
 
-void weigh_by_stress(std::vector<StressPoint>& points) {
-  std::vector<double> sizes;
-  for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
-  std::vector<double> sorted = sizes;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double median = sorted[sorted.size() / 2];
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].weight = median > 0 ? std::pow(median / (median + sizes[i]), 2) : 1;
-  }
+// Half of the sizes lie below.
+double median(std::vector<double> sizes) {
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+  return sizes[sizes.size() / 2];
+}
+
+// Weight of a stress of this size: errors of stresses beyond the usual count relative to them.
+double weight_of(double size, double usual) {
+  return usual > 0 ? std::pow(usual / (usual + size), 2) : 1;
 }
 
 // An isotropic law answers turned strain with turned stress.
@@ -185,9 +185,7 @@ std::optional<double> best_knee(const Law& law, StrainRange range, int spans, do
   const std::vector<StressPoint> points = sample(law, lines, lines, time);
   std::vector<double> sizes;
   for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
-  if (sizes.empty()) return std::nullopt;
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  const double median = sizes[sizes.size() / 2];
+  const double usual = median(std::move(sizes));
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
   for (const double part : {0.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
@@ -203,13 +201,13 @@ std::optional<double> best_knee(const Law& law, StrainRange range, int spans, do
         const bool next = ask(law, Vec3(ends[i + 1], line, 0), time, right);
         if (known && next && ask(law, Vec3(0.5 * (ends[i] + ends[i + 1]), line, 0), time, middle)) {
           const Vec3 miss = middle.stress - 0.5 * (left.stress + right.stress);
-          error = std::max(error, miss.head<2>().norm() / (median + middle.stress.head<2>().norm()));
+          error = std::max(error, weight_of(middle.stress.head<2>().norm(), usual) * miss.head<2>().squaredNorm());
         }
         known = next;
         left = right;
       }
     }
-    if (error < 0.99 * least) {
+    if (error < 0.98 * least) {
       least = error;
       best = knee;
     }
@@ -251,11 +249,14 @@ void judge(const F& stress, const TableDomain& domain, const std::vector<double>
 struct Observations {
   std::vector<nurbs::SurfaceObservation> list;
   std::vector<Vec2> strains; // of each
+  std::size_t reported = 0;  // the first of them, not those that fill
 };
 
-Observations gradients(std::span<const StressPoint> points) {
+// The first `reported` points are those whose residuals are reported.
+Observations gradients(std::span<const StressPoint> points, std::size_t reported) {
   Observations result;
-  for (const StressPoint& p : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const StressPoint& p = points[i];
     if (!std::isnan(p.s1)) {
       result.list.push_back({p.e1, p.e2, 1, 0, p.s1, p.weight});
       result.strains.emplace_back(p.e1, p.e2);
@@ -264,6 +265,7 @@ Observations gradients(std::span<const StressPoint> points) {
       result.list.push_back({p.e1, p.e2, 0, 1, p.s2, p.weight});
       result.strains.emplace_back(p.e1, p.e2);
     }
+    if (i < reported) result.reported = result.list.size();
   }
   if (result.list.empty()) throw std::invalid_argument("a table needs points with stresses");
   return result;
@@ -278,7 +280,7 @@ double sum_of_weights(const std::vector<nurbs::SurfaceObservation>& observations
 void report_residuals(const nurbs::Residuals& residuals, const Observations& observations, FitReport& report) {
   double sum = 0;
   double weights = 0;
-  for (std::size_t i = 0; i < observations.list.size(); ++i) { // those of stresses only
+  for (std::size_t i = 0; i < observations.reported; ++i) {
     const nurbs::SurfaceObservation& o = observations.list[i];
     const double r = residuals.each[i];
     sum += o.weight * r * r;
@@ -334,13 +336,13 @@ double smallest_span(const std::vector<double>& breaks) {
   return smallest;
 }
 
-PdFit pd_fit(std::span<const StressPoint> points, StrainRange range, std::optional<double> knee,
+PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
              const NurbsOptions& options) {
   const std::vector<double> ends = strain_breaks(range, options.net[0] - options.degree, knee);
   const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
   auto table = std::make_shared<PdTable>();
   PdFit fit;
-  Observations observations = gradients(points);
+  Observations observations = gradients(points, reported);
   nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, options.smoothing);
   table->potential = std::move(potential.surface);
   table->domain = domain_of(points, range, true);
@@ -381,7 +383,7 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
   LeFit fit;
   const std::vector<double> ends1 = strain_breaks(range, options.net[0] - options.degree, knee);
   const std::vector<double> ends2 = strain_breaks(range, options.net[1] - options.degree, knee);
-  Observations observations = gradients(points);
+  Observations observations = gradients(points, points.size());
   nurbs::SurfaceFit potential =
       fit_potential(nurbs::from_breaks(options.degree + 1, ends1), nurbs::from_breaks(options.degree + 1, ends2),
                     observations, false, options.smoothing);
@@ -509,11 +511,17 @@ std::vector<StressPoint> sample(const Law& law, std::span<const double> first, s
       points.push_back({e1, e2, response.stress[0], response.stress[1], 1});
     }
   }
-  if (!points.empty()) weigh_by_stress(points);
+  if (points.empty()) throw std::invalid_argument("the law to fit has no state in the range of strains");
+  std::vector<double> sizes;
+  for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
+  const double usual = median(sizes);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].weight = weight_of(sizes[i], usual);
   return points;
 }
 
-PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
+namespace {
+
+void check_pd(std::span<const StressPoint> points, const NurbsOptions& options) {
   check(options);
   if (options.net[0] != options.net[1]) {
     throw std::invalid_argument(
@@ -521,28 +529,31 @@ PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& opti
                     options.net[1]));
   }
   for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
-  return pd_fit(points, range_of(points, options.range), options.knee, options);
+}
+
+} // namespace
+
+PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
+  check_pd(points, options);
+  return pd_fit(points, points.size(), range_of(points, options.range), options.knee, options);
 }
 
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points,
                    double fill) {
-  check(options);
+  check_pd(points, options);
   const StrainRange range = range_for_law(options);
   check_isotropic(law, range, time);
-  NurbsOptions with = options;
   const int spans = options.net[0] - options.degree;
-  if (!with.knee) with.knee = best_knee(law, range, spans, time);
-  const std::vector<double> places = places_in(strain_breaks(range, spans, with.knee));
-  std::vector<StressPoint> all;
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
+  const std::vector<double> places = places_in(strain_breaks(range, spans, knee));
+  std::vector<StressPoint> all(points.begin(), points.end());
   for (StressPoint& point : sample(law, places, places, time)) {
     if (point.e2 > point.e1) continue; // its mirror image is there
     if (point.e2 < point.e1) point.weight *= 2;
     if (!points.empty()) point.weight *= fill;
     all.push_back(point);
   }
-  all.insert(all.end(), points.begin(), points.end());
-  PdFit fit = fit_pd_nurbs(all, with);
-  return fit;
+  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee, options);
 }
 
 LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear,
@@ -565,10 +576,15 @@ LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
   const int count = 6 * (options.net[0] - options.degree);
   const double size = 2 * knee.value_or(largest);
   for (int i = 1; i <= count; ++i) {
-    const double gamma = size * std::sinh(std::asinh(largest / size) * i / count);
+    const double gamma = i < count ? size * std::sinh(std::asinh(largest / size) * i / count) : largest;
     Response response;
     if (ask(law, Vec3(0, 0, gamma), time, response)) shear.push_back({gamma, response.stress[2], 1});
   }
+  std::vector<double> sizes;
+  for (const ShearPoint& point : shear) sizes.push_back(std::abs(point.s12));
+  if (shear.empty()) throw std::invalid_argument("the law to fit has no state in shear");
+  const double usual = median(std::move(sizes));
+  for (ShearPoint& point : shear) point.weight = weight_of(std::abs(point.s12), usual);
   return le_fit(points, shear, range, knee, options);
 }
 

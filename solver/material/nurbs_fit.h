@@ -77,7 +77,7 @@ std::vector<StressPoint> sample(const Law& law, std::span<const double> first, s
 PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options);
 
 // Table of an isotropic law in a range of strains, that of its material without tension field. Points, where given,
-// count by 1 / `fill` more than the law, which fills what they leave open.
+// count by 1 / `fill` more than the law, which fills what they leave open; the report is then of the points alone.
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time = 0,
                    std::span<const StressPoint> points = {}, double fill = 1e-3);
 

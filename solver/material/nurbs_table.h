@@ -22,16 +22,19 @@ struct TableBorder {
   double a = 0, b = 0, c = 0;
 };
 
+inline constexpr double table_rounding = 1e-12; // of strains at the end of a table
+
 // Where a table over two strains has data: a square, or a convex part of it.
 struct TableDomain {
   StrainRange range;                // of both strains
   std::vector<TableBorder> borders; // none: all of the square
 
   bool holds(double e1, double e2) const {
-    constexpr double rounding = 1e-12; // of strains
-    if (!(std::min(e1, e2) >= range.min - rounding && std::max(e1, e2) <= range.max + rounding)) return false;
-    return std::all_of(borders.begin(), borders.end(),
-                       [&](const TableBorder& border) { return border.a * e1 + border.b * e2 <= border.c + rounding; });
+    if (!(std::min(e1, e2) >= range.min - table_rounding && std::max(e1, e2) <= range.max + table_rounding))
+      return false;
+    return std::all_of(borders.begin(), borders.end(), [&](const TableBorder& border) {
+      return border.a * e1 + border.b * e2 <= border.c + table_rounding;
+    });
   }
 };
 
