@@ -2,6 +2,7 @@
 #include "solver/path/load_path.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -50,6 +51,18 @@ bool is_folded(const assembly::FoilEquations& foil, Index element, const Configu
                       [](const element::PointState& p) { return p.surface == material::Surface::taut; });
 }
 
+// Where the free nodes go as the load factor grows by one, from the last evaluation, if edges move: with the edges
+// alone, the strip of elements beside them would take all their move.
+std::optional<Change> way_with_edges(const System& system, Newton& newton, const Configuration& at) {
+  if (system.model().move.size() == 0) return std::nullopt;
+  Tangent& tangent = newton.tangent();
+  if (!tangent.factorize(at, Tangent::Repair::indefinite) || tangent.artificial_tension() > 0) return std::nullopt;
+  const std::optional<Change> way = tangent.along(at);
+  constexpr double no_load = 1e-12;
+  if (!way || std::abs(way->load_factor) <= no_load) return std::nullopt;
+  return (1 / way->load_factor) * *way;
+}
+
 } // namespace
 
 bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
@@ -81,6 +94,10 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
   double length = part;
   int part_number = 1; // the part being walked
   constexpr int easy_iterations = 8;
+  std::optional<Change> way;
+  if (system.model().move.size() > 0 && system.evaluate(configuration, true).possible) {
+    way = way_with_edges(system, newton, configuration);
+  }
   while (part_number <= options.parts) {
     if (result.steps == options.max_steps) {
       system.evaluate(configuration, true);
@@ -92,8 +109,9 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     const double left = goal - result.load_factor;
     // no sliver of a step at the end of a part
     const bool to_goal = length > 0.999 * left;
-    Configuration trial = configuration;
-    trial.load_factor = to_goal ? goal : result.load_factor + (length > 0.6 * left ? 0.5 * left : length);
+    const double next = to_goal ? goal : result.load_factor + (length > 0.6 * left ? 0.5 * left : length);
+    Configuration trial = way ? moved(system, configuration, (next - result.load_factor) * *way) : configuration;
+    trial.load_factor = next;
     Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
     });
@@ -125,6 +143,7 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       }
       continue;
     }
+    way = way_with_edges(system, newton, trial); // before the history is accepted: what flows goes on flowing
     system.accept_history();
     configuration = std::move(trial);
     result.load_factor = configuration.load_factor;
