@@ -65,9 +65,10 @@ Index membrane_forces_of(const Membrane& m, std::span<const Vec3> positions, std
         const double weight = m.thickness * m.reference.area[point]; // m3
         const base::Mat32& F = deformation[i];
         base::Mat2 S;
-        S << batch.stress[i][0], batch.stress[i][2], batch.stress[i][2], batch.stress[i][1];
+        const Vec3& stress = batch.response[i].stress;
+        S << stress[0], stress[2], stress[2], stress[1];
         S *= weight;
-        energy += weight * batch.energy[i];
+        energy += weight * batch.response[i].energy;
         const base::Mat32 P = F * S;
         f.noalias() += P * d.transpose();
         if (!with_tangent) continue;
@@ -77,7 +78,7 @@ Index membrane_forces_of(const Membrane& m, std::span<const Vec3> positions, std
           B.template block<1, 3>(1, 3 * a) = d(a, 1) * F.col(1).transpose();
           B.template block<1, 3>(2, 3 * a) = d(a, 0) * F.col(1).transpose() + d(a, 1) * F.col(0).transpose();
         }
-        const Eigen::Matrix<double, 3, size> CB = weight * batch.tangent[i] * B;
+        const Eigen::Matrix<double, 3, size> CB = weight * batch.response[i].tangent * B;
         Eigen::Map<Eigen::Matrix<double, size, size>> K(tangent.data() + e * size * size);
         K.noalias() += B.transpose() * CB;
         const Eigen::Matrix<double, n, 2> dS = d * S;
@@ -125,7 +126,7 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
       one.strain[0] = green_lagrange(state.deformation);
       one.old_history = components > 0 ? history.data() + i * static_cast<std::size_t>(components) : nullptr;
       material::evaluate(membrane.law, one);
-      state.stress = one.stress[0];
+      state.stress = one.response[0].stress;
       state.thickness_ratio = material::thickness_stretch(membrane.law, one.strain[0], one.old_history);
       const material::Relaxed relaxed = material::relaxed(membrane.law, one.strain[0], one.old_history);
       state.surface = relaxed.surface;

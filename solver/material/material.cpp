@@ -3,8 +3,16 @@
 
 namespace pneuma::solver::material {
 
+std::span<const std::string_view> history_names(const Law& law) {
+  return std::visit([]<Material M>(const M&) { return std::span<const std::string_view>(M::history_names); }, law);
+}
+
 int history_components(const Law& law) {
-  return std::visit([]<Material M>(const M&) { return M::history_components; }, law);
+  return static_cast<int>(history_names(law).size());
+}
+
+Vec3 stress_free_strain(const Law& law, const double* history) {
+  return std::visit([&]<Material M>(const M& m) -> Vec3 { return m.stress_free_strain(history); }, law);
 }
 
 Relaxed relaxed(const Law& law, const Vec3& strain, const double* history) {
@@ -38,12 +46,10 @@ int evaluate(const Law& law, Batch& batch) {
       [&batch]<Material M>(const M& m) {
         for (int i = 0; i < batch.count; ++i) {
           const auto k = static_cast<std::size_t>(i);
-          const double* old_history = batch.old_history + i * M::history_components;
-          double* new_history = batch.new_history + i * M::history_components;
-          if (m.evaluate(batch.strain[k], old_history, new_history, batch.dt, batch.stress[k], batch.tangent[k],
-                         batch.energy[k]) != Status::ok) {
-            return i;
-          }
+          const double* old_history = batch.old_history + i * history_size<M>;
+          double* new_history = batch.new_history + i * history_size<M>;
+          batch.status = m.evaluate(batch.strain[k], old_history, new_history, batch.dt, batch.response[k]);
+          if (batch.status != Status::ok) return i;
         }
         return -1;
       },

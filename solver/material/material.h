@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <variant>
 
 #include "solver/material/mooney_rivlin.h"
@@ -14,7 +15,8 @@ static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField
 
 using Law = std::variant<StVenantKirchhoff, MooneyRivlin, TensionField<StVenantKirchhoff>, TensionField<MooneyRivlin>>;
 
-int history_components(const Law& law);
+std::span<const std::string_view> history_names(const Law& law);
+int history_components(const Law& law); // doubles a point
 
 // What the material feels: of laws without a tension field the strain as it is, taut.
 Relaxed relaxed(const Law& law, const Vec3& strain, const double* history);
@@ -23,20 +25,22 @@ bool has_tension_field(const Law& law);
 
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history);
 
+// Green-Lagrange strain at which a history leaves no stress.
+Vec3 stress_free_strain(const Law& law, const double* history);
+
 // Points of several elements that meet their material in one call: one instantiation per law, none per element type.
 struct Batch {
   static constexpr int capacity = 64;
   int count = 0;
   std::array<Vec3, capacity> strain;
-  std::array<Vec3, capacity> stress;
-  std::array<Mat3, capacity> tangent;
-  std::array<double, capacity> energy;
+  std::array<Response, capacity> response;
   const double* old_history = nullptr; // [point][component]
   double* new_history = nullptr;
-  double dt = 0; // s
+  double dt = 0;              // s
+  Status status = Status::ok; // of the last point evaluated
 };
 
-// Evaluates all points; returns the number of the first one that failed, or -1.
+// Evaluates all points; returns the number of the first one whose status is not ok, or -1.
 int evaluate(const Law& law, Batch& batch);
 
 } // namespace pneuma::solver::material

@@ -30,7 +30,7 @@ Vec3 prestress_of(const Law& law, double thickness, const Vec3& predeformation) 
   batch.old_history = history.data();
   batch.new_history = history.data() + history_components(law);
   if (evaluate(law, batch) != -1) return Vec3::Constant(std::nan(""));
-  return components(thickness / g.determinant() * g * symmetric(batch.stress[0]) * g);
+  return components(thickness / g.determinant() * g * symmetric(batch.response[0].stress) * g);
 }
 
 std::optional<Vec3> predeformation(const Law& law, double thickness, const Vec3& force) {

@@ -10,7 +10,7 @@ namespace pneuma::solver::material {
 // St. Venant-Kirchhoff, isotropic, plane stress: S = E/(1-nu^2) [E + nu ...] (Holzapfel 2000, eq. 6.151, with the
 // thickness stress condensed).
 struct StVenantKirchhoff {
-  static constexpr int history_components = 0;
+  static constexpr std::array history_names = no_history;
 
   double youngs_modulus = 0; // Pa
   double poissons_ratio = 0; // -
@@ -22,11 +22,10 @@ struct StVenantKirchhoff {
     return d;
   }
 
-  Status evaluate(const Vec3& strain, const double*, double*, double, Vec3& stress, Mat3& tangent,
-                  double& energy) const noexcept {
-    tangent = stiffness();
-    stress = tangent * strain;
-    energy = 0.5 * stress.dot(strain);
+  Status evaluate(const Vec3& strain, const double*, double*, double, Response& response) const noexcept {
+    response.tangent = stiffness();
+    response.stress = response.tangent * strain;
+    response.energy = response.potential = 0.5 * response.stress.dot(strain);
     return Status::ok;
   }
 
@@ -34,6 +33,8 @@ struct StVenantKirchhoff {
   double thickness_stretch(const Vec3& strain, const double*) const noexcept {
     return std::sqrt(1 - 2 * poissons_ratio / (1 - poissons_ratio) * (strain[0] + strain[1]));
   }
+
+  Vec3 stress_free_strain(const double*) const noexcept { return Vec3::Zero(); }
 };
 static_assert(Material<StVenantKirchhoff>);
 

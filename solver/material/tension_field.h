@@ -19,34 +19,34 @@ struct Relaxed {
   Vec3 strain = Vec3::Zero();
 };
 
-// Tension field over a law that is free of stress at E = 0: a foil that cannot carry compression. It feels
-// E* = E + P, P the positive semidefinite strain that wrinkles take up, with the least energy W*(E) = min W(E + P)
-// (Pipkin 1986, IMA J. Appl. Math. 36):
+// Tension field over a law: a foil that cannot carry compression. It feels E* = E + P, P the positive semidefinite
+// strain that wrinkles take up, with the least potential W*(E) = min W(E + P) (Pipkin 1986, IMA J. Appl. Math. 36);
+// E0 is the strain at which its history leaves no stress:
 //   taut      S(E) has no negative principal value: P = 0
 //   wrinkled  P = a m (x) m, a > 0, no traction across: S* m = 0, so that S* = s t (x) t, s > 0
-//   slack     no direction t is stretched, E <= 0: E* = 0, S* = 0
-// Energy, stress and tangent are those of W*; it is once continuously differentiable. m is not assumed to be a
+//   slack     no direction t is stretched, E <= E0: E* = E0, S* = 0
+// Potential, stress and tangent are those of W*; it is once continuously differentiable. m is not assumed to be a
 // principal direction of E (it is for isotropic laws); a by Newton in a bracket (W is convex in it), the angle by
 // Newton with a line search on the energy. History is updated from E*; the wrinkles leave none. Fails only where the
 // strain is not finite or the law fails however far the wrinkles are laid flat.
 template <Material M>
 struct TensionField {
-  static constexpr int history_components = M::history_components;
+  static constexpr auto history_names = M::history_names;
 
   M law;
 
-  Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt, Vec3& stress,
-                  Mat3& tangent, double& energy) const noexcept {
+  Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
+                  Response& response) const noexcept {
     const Solution solution = solve({strain, old_history, new_history, dt});
-    if (solution.status != Status::ok) return Status::failed;
-    energy = solution.energy;
+    if (solution.status != Status::ok) return solution.status;
+    response = solution.law;
+    Vec3& stress = response.stress;
+    Mat3& tangent = response.tangent;
     if (solution.surface == Surface::slack) {
       stress.setZero();
       tangent.setZero();
       return Status::ok;
     }
-    stress = solution.stress;
-    tangent = solution.tangent;
     if (solution.surface == Surface::wrinkled) {
       // d(S* m) = 0 with dE* = dE + da m (x) m - 2 a dtheta sym(t (x) m), condensed: the second unknown is scaled by
       // sqrt(2 a), which keeps the matrix finite where wrinkles begin (a = 0) and where the tension ends (s = 0)
@@ -70,10 +70,12 @@ struct TensionField {
     return law.thickness_stretch(relaxed(strain, history).strain, history);
   }
 
+  Vec3 stress_free_strain(const double* history) const noexcept { return law.stress_free_strain(history); }
+
   Relaxed relaxed(const Vec3& strain, const double* history) const noexcept {
-    std::array<double, std::max(M::history_components, 1)> scratch;
+    std::array<double, std::max(history_size<M>, 1)> scratch;
     const Solution solution = solve({strain, history, scratch.data(), 0.0});
-    if (solution.surface == Surface::slack) return {Surface::slack, Vec3::Zero()};
+    if (solution.surface == Surface::slack) return {Surface::slack, law.stress_free_strain(history)};
     return {solution.surface, strain + solution.amount * solution.across};
   }
 
@@ -92,15 +94,13 @@ private:
     double amount = 0; // a
     // t (x) t, m (x) m, sym(t (x) m) as strains: times a stress, its components in t and m
     Vec3 along = Vec3::Zero(), across = Vec3::Zero(), shear = Vec3::Zero();
-    Vec3 stress = Vec3::Zero();
-    Mat3 tangent = Mat3::Zero();
-    double energy = 0;
+    Response law;
   };
 
   bool ask_law(const Point& p, Solution& at) const noexcept {
     const Vec3 strain = p.strain + at.amount * at.across;
-    at.status = law.evaluate(strain, p.old_history, p.new_history, p.dt, at.stress, at.tangent, at.energy);
-    return at.status == Status::ok && at.stress.allFinite();
+    at.status = law.evaluate(strain, p.old_history, p.new_history, p.dt, at.law);
+    return at.status == Status::ok && at.law.stress.allFinite();
   }
 
   static constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
@@ -114,9 +114,10 @@ private:
     at.along = Vec3(c * c, s * s, 2 * c * s);
     at.across = Vec3(s * s, c * c, -2 * c * s);
     at.shear = Vec3(-c * s, c * s, c * c - s * s);
-    if (plain.status == Status::ok && at.across.dot(plain.stress) >= 0) return at;
-    // m S m < 0 (or the law fails) at `low`, > 0 at `high`; begin where the foil is as wide as without strain
-    const double shortening = -Vec3(at.across[0], at.across[1], 0.5 * at.across[2]).dot(p.strain);
+    if (plain.status == Status::ok && at.across.dot(plain.law.stress) >= 0) return at;
+    // m S m < 0 (or the law fails) at `low`, > 0 at `high`; begin where the foil is as wide as without stress
+    const Vec3 missing = law.stress_free_strain(p.old_history) - p.strain;
+    const double shortening = Vec3(at.across[0], at.across[1], 0.5 * at.across[2]).dot(missing);
     const double smallest = rounding * p.strain.cwiseAbs().maxCoeff();
     double low = 0;
     double high = -1;
@@ -124,8 +125,8 @@ private:
     constexpr int enough = 200; // doubling and halving alone need about 100
     for (int i = 0; i < enough; ++i) {
       const bool possible = ask_law(p, at);
-      const double force = possible ? at.across.dot(at.stress) : -1;
-      const double slope = possible ? at.across.dot(at.tangent * at.across) : 0;
+      const double force = possible ? at.across.dot(at.law.stress) : -1;
+      const double slope = possible ? at.across.dot(at.law.tangent * at.across) : 0;
       (force < 0 ? low : high) = at.amount;
       const double newton = at.amount - force / slope;
       if (possible && std::abs(newton - at.amount) <= smallest + rounding * at.amount) break;
@@ -146,19 +147,20 @@ private:
     Solution plain;
     if (!p.strain.allFinite()) return plain;
     if (ask_law(p, plain)) {
-      const Vec3& s = plain.stress;
+      const Vec3& s = plain.law.stress;
       if (s[0] + s[1] >= 0 && s[0] * s[1] >= s[2] * s[2]) return plain;
     }
-    const double mean = 0.5 * (p.strain[0] + p.strain[1]);
-    const double half = 0.5 * (p.strain[0] - p.strain[1]);
-    if (mean + std::hypot(half, 0.5 * p.strain[2]) <= 0) {
-      const Vec3 none = Vec3::Zero();
+    const Vec3 free = law.stress_free_strain(p.old_history);
+    const Vec3 stretch = p.strain - free;
+    const double mean = 0.5 * (stretch[0] + stretch[1]);
+    const double half = 0.5 * (stretch[0] - stretch[1]);
+    if (mean + std::hypot(half, 0.5 * stretch[2]) <= 0) {
       plain.surface = Surface::slack;
-      plain.status = law.evaluate(none, p.old_history, p.new_history, p.dt, plain.stress, plain.tangent, plain.energy);
+      plain.status = law.evaluate(free, p.old_history, p.new_history, p.dt, plain.law);
       return plain;
     }
-    // the direction of the larger principal strain: exact for isotropic laws
-    double angle = 0.5 * std::atan2(0.5 * p.strain[2], half);
+    // the direction of the larger principal stretch: exact for isotropic laws without history
+    double angle = 0.5 * std::atan2(0.5 * stretch[2], half);
     Solution best = lay_flat(p, plain, angle);
     if (!balanced(p, best)) {
       constexpr int directions = 12;
@@ -166,7 +168,8 @@ private:
       for (int i = 1; i < directions; ++i) {
         const double other = first + std::acos(-1.0) * i / directions;
         const Solution at = lay_flat(p, plain, other);
-        if (at.status != Status::ok || (best.status == Status::ok && !(at.energy < best.energy))) continue;
+        if (at.status != Status::ok || (best.status == Status::ok && !(at.law.potential < best.law.potential)))
+          continue;
         best = at;
         angle = other;
       }
@@ -179,18 +182,20 @@ private:
 
   // No shear traction across the wrinkles, to rounding.
   static bool balanced(const Point& p, const Solution& at) noexcept {
-    const double scale = (p.strain + at.amount * at.across).cwiseAbs().maxCoeff() * at.tangent.cwiseAbs().maxCoeff();
-    return at.status == Status::ok && std::abs(at.shear.dot(at.stress)) <= rounding * scale;
+    const double scale =
+        (p.strain + at.amount * at.across).cwiseAbs().maxCoeff() * at.law.tangent.cwiseAbs().maxCoeff();
+    return at.status == Status::ok && std::abs(at.shear.dot(at.law.stress)) <= rounding * scale;
   }
 
-  // Newton on the wrinkles' angle, dW/dangle = -2 a t S m, downhill on the energy.
+  // Newton on the wrinkles' angle, dW/dangle = -2 a t S m, downhill on the potential.
   void turn(const Point& p, const Solution& plain, double& angle, Solution& best) const noexcept {
     constexpr int enough = 50;
     for (int i = 0; i < enough && !balanced(p, best); ++i) {
-      const double force = best.shear.dot(best.stress);
-      const Vec3 u = best.tangent * best.across;
-      const double k = best.shear.dot(best.tangent * best.shear) - std::pow(best.shear.dot(u), 2) / best.across.dot(u);
-      const double stiffness = best.along.dot(best.stress) + 2 * best.amount * k;
+      const Response& r = best.law;
+      const double force = best.shear.dot(r.stress);
+      const Vec3 u = r.tangent * best.across;
+      const double k = best.shear.dot(r.tangent * best.shear) - std::pow(best.shear.dot(u), 2) / best.across.dot(u);
+      const double stiffness = best.along.dot(r.stress) + 2 * best.amount * k;
       constexpr double largest = 0.2;
       double step = stiffness > 0 ? std::clamp(force / stiffness, -largest, largest) : std::copysign(largest, force);
       Solution next = lay_flat(p, plain, angle + step);
@@ -198,9 +203,10 @@ private:
         if (next.status != Status::ok) return false;
         // of the energy: those of the strain come in by the stress
         const double digits =
-            rounding * (best.energy + best.stress.cwiseAbs().maxCoeff() * p.strain.cwiseAbs().maxCoeff());
-        return next.energy < best.energy - digits ||
-               (next.energy <= best.energy + digits && std::abs(next.shear.dot(next.stress)) < std::abs(force));
+            rounding * (r.potential + r.stress.cwiseAbs().maxCoeff() * p.strain.cwiseAbs().maxCoeff());
+        return next.law.potential < r.potential - digits ||
+               (next.law.potential <= r.potential + digits &&
+                std::abs(next.shear.dot(next.law.stress)) < std::abs(force));
       };
       for (int halvings = 0; halvings < 30 && !better(); ++halvings) {
         step /= 2;

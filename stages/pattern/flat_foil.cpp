@@ -151,7 +151,7 @@ std::optional<ElasticStretch> elastic_stretch(const solver::material::Law& law, 
   batch.old_history = history.data();
   batch.new_history = unused.data();
   if (solver::material::evaluate(law, batch) >= 0) return std::nullopt;
-  const Mat3 d = batch.tangent[0];
+  const Mat3 d = batch.response[0].tangent;
   return ElasticStretch{*g, d.transpose() * Vec3(1, 1, 2).asDiagonal() * d};
 }
 

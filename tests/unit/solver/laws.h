@@ -11,24 +11,18 @@ namespace pneuma::tests {
 using base::Mat2;
 using base::Mat3;
 using base::Vec3;
-
-struct Answer {
-  Vec3 stress = Vec3::Zero();
-  Mat3 tangent = Mat3::Zero();
-  double energy = 0;
-};
+using solver::material::Response;
 
 // What a law without history answers.
 template <solver::material::Material M>
-Answer answer(const M& law, const Vec3& strain) {
-  Answer a;
-  EXPECT_EQ(law.evaluate(strain, nullptr, nullptr, 0, a.stress, a.tangent, a.energy), solver::material::Status::ok)
-      << strain.transpose();
+Response answer(const M& law, const Vec3& strain) {
+  Response a;
+  EXPECT_EQ(law.evaluate(strain, nullptr, nullptr, 0, a), solver::material::Status::ok) << strain.transpose();
   return a;
 }
 
-// Largest differences of the tangent from differences of the stress, and of the stress from those of the energy, each
-// relative to the largest entry.
+// Largest differences of the tangent from differences of the stress, and of the stress from those of the potential,
+// each relative to the largest entry.
 template <solver::material::Material M>
 double tangent_error(const M& law, const Vec3& strain, double step) {
   const auto stress = [&](const Eigen::VectorXd& e) { return Eigen::VectorXd(answer(law, Vec3(e)).stress); };
@@ -38,9 +32,9 @@ double tangent_error(const M& law, const Vec3& strain, double step) {
 template <solver::material::Material M>
 double stress_error(const M& law, const Vec3& strain, double step) {
   const auto energy = [&](const Eigen::VectorXd& e) {
-    return Eigen::VectorXd::Constant(1, answer(law, Vec3(e)).energy).eval();
+    return Eigen::VectorXd::Constant(1, answer(law, Vec3(e)).potential).eval();
   };
-  const Answer at = answer(law, strain);
+  const Response at = answer(law, strain);
   return relative_difference(finite_difference_jacobian(energy, strain, step), at.stress.transpose());
 }
 
