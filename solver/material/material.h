@@ -23,6 +23,9 @@ Relaxed relaxed(const Law& law, const Vec3& strain, const double* history);
 
 bool has_tension_field(const Law& law);
 
+// Whether it flows with time: then it has an equivalent plastic strain.
+bool is_rate_dependent(const Law& law);
+
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history);
 
 // Green-Lagrange strain at which a history leaves no stress.

@@ -177,10 +177,11 @@ private:
 
   std::vector<FoilResults> results(const assembly::Configuration& c) const {
     std::vector<FoilResults> all;
-    for (const assembly::FoilEquations& foil : system_.foils()) {
+    for (std::size_t i = 0; i < system_.foils().size(); ++i) {
+      const assembly::FoilEquations& foil = system_.foils()[i];
       all.push_back(foil_results(system_.model().mesh, foil.block, foil.membrane,
                                  drive_.state.foils[static_cast<std::size_t>(foil.block)].strip_of_element, begin_,
-                                 c.positions, {}));
+                                 c.positions, system_.history(static_cast<Index>(i))));
     }
     return all;
   }
@@ -217,6 +218,14 @@ private:
       chamber.ambient_pressure = solver::chamber::ambient_pressure(model.gas, model.ambient, c.load_factor);
       chamber.gauge_pressure = c.pressures[static_cast<Eigen::Index>(i)];
       chamber.volume = system_.chamber_volume(static_cast<Index>(i));
+    }
+    for (std::size_t i = 0; i < system_.foils().size(); ++i) {
+      const assembly::FoilEquations& foil = system_.foils()[i];
+      pipeline::state::Foil& written = state.foils[static_cast<std::size_t>(foil.block)];
+      const std::span<const double> history = system_.history(static_cast<Index>(i));
+      const std::span<const std::string_view> names = solver::material::history_names(foil.membrane.law);
+      written.history.assign(history.begin(), history.end());
+      written.history_names.assign(names.begin(), names.end());
     }
     add_fields(foils, begin_, state);
     state.provenance = provenance(start_);
@@ -270,7 +279,7 @@ private:
   }
 
   void finish(assembly::Configuration& c, const path::PathResult& path_result) {
-    system_.evaluate(c, true);
+    system_.evaluate_accepted(c, true);
     const std::optional<path::Row> held =
         path_result.held ? std::optional(path::row_of(*path_result.held, 0, system_, c)) : std::nullopt;
     const path::Stability stability = newton_.tangent().stability(c, held ? &*held : nullptr);
