@@ -10,9 +10,10 @@
 
 namespace pneuma::tests {
 
-// A quarter of a rectangular sheet with a hole in the middle of it, which is the origin: `width` along x, `height` along
-// y, Q4. Around the hole a square of side `width`, mapped from the hole's quarter circle to its sides (transfinite):
-// `radial` elements outwards, twice `side` along the hole; above it `above` rows of `side` elements to the height.
+// A quarter of a rectangular sheet with a hole in the middle of it, which is the origin: `width` along x, `height`
+// along y, Q4. Around the hole a square of side `width`, mapped from the hole's quarter circle to its sides
+// (transfinite): `radial` elements outwards, twice `side` along the hole; above it `above` rows of `side` elements to
+// the height.
 struct PerforatedSheet {
   double width = 0, height = 0, radius = 0; // m
   int radial = 0, side = 0, above = 0;
@@ -43,6 +44,7 @@ struct PlainNewton {
   bool converged = false;
   std::vector<double> norms;
 };
-PlainNewton plain_newton(solver::assembly::System& system, solver::assembly::Configuration& at, double enough, int most);
+PlainNewton plain_newton(solver::assembly::System& system, solver::assembly::Configuration& at, double enough,
+                         int most);
 
 } // namespace pneuma::tests
