@@ -42,9 +42,7 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
   curve.rate = rate;
   law::TestPiece piece(material, options.angle);
   const law::Control control = law::biaxial(ratio.a, ratio.b);
-  const auto to = [&](int step) {
-    return engineering(options.strain * step / options.steps, options.true_measures);
-  };
+  const auto to = [&](int step) { return engineering(options.strain * step / options.steps, options.true_measures); };
   curve.loading.push_back(piece.state());
   for (int i = 1; i <= options.steps; ++i) {
     if (!pull(piece, control, to(i), rate)) {

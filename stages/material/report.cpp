@@ -92,8 +92,9 @@ void write_csv(std::span<const Curve> curves, const Options& options) {
     for (const auto* part : {&curve.loading, &curve.unloading}) {
       for (const PieceState& state : *part) {
         const Shown at = shown(state, options.true_measures);
-        fmt::format_to(std::back_inserter(text), "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n",
-                       curve.material, name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
+        fmt::format_to(std::back_inserter(text),
+                       "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n", curve.material,
+                       name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
                        part == &curve.loading ? "loading" : "unloading", state.time, at.strain[0], at.strain[1],
                        at.stress[0] / 1e6, at.stress[1] / 1e6, state.thickness_stretch, state.energy / 1e6);
       }
