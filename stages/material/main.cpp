@@ -63,10 +63,11 @@ void say_misfit(const Misfit& misfit, const TestCurve& test) {
   if (!misfit.end.empty()) say(fmt::format("  test {}: {}", test.name, misfit.end));
 }
 
-// One material's part of the work.
+// The materials one after another, and what is written of all of them.
 class Bench {
 public:
-  Bench(const Options& options, const std::vector<TestCurve>& tests) : options_(options), tests_(tests) {}
+  Bench(const Options& options, const std::vector<TestCurve>& tests)
+      : options_(options), tests_(tests), drawn_tests_(tests) {}
 
   void show(const workflow::Material& material) {
     workflow::Material taut = material;
@@ -78,6 +79,8 @@ public:
 
   void show_fit(const workflow::Material& material) {
     const TestCurve test = uniaxial_test(material.name);
+    if (tests_.empty()) drawn_tests_ = {test};
+    first_drawn_ = curves_.size();
     // what a curve in tension does not tell
     double nu = 0.5;
     bool logarithmic = true;
@@ -99,7 +102,8 @@ public:
 
   void write() const {
     if (!options_.csv.empty()) write_csv(curves_, options_);
-    if (!options_.svg.empty()) write_svg(curves_, tests_, options_);
+    if (options_.svg.empty()) return;
+    write_svg(std::span<const Curve>(curves_).subspan(first_drawn_), drawn_tests_, options_);
   }
 
 private:
@@ -146,6 +150,8 @@ private:
   const Options& options_;
   const std::vector<TestCurve>& tests_;
   std::vector<Curve> curves_;
+  std::vector<TestCurve> drawn_tests_;
+  std::size_t first_drawn_ = 0; // a picture of a fit shows it and what it was fitted to
 };
 
 int run(int argc, char** argv) {

@@ -163,6 +163,9 @@ Options parse(int argc, char** argv) {
   if (!options.csv.empty() && std::find(options.data.begin(), options.data.end(), options.csv) != options.data.end()) {
     throw InputError(fmt::format("--csv: `{}` holds the test data", options.csv.string()));
   }
+  if (options.true_measures && !options.data.empty()) {
+    throw InputError("--true: tests are in engineering strain and nominal stress; leave --data out, or --true");
+  }
   if (!options.svg.empty() && options.svg.extension() != ".svg") {
     throw InputError(fmt::format("--svg: `{}` does not end in .svg", options.svg.string()));
   }
