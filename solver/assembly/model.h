@@ -27,7 +27,8 @@ inline double at(const Ramp& ramp, double load_factor) {
 struct Foil {
   element::Reference reference;
   material::Law law;
-  double thickness = 0; // m, nominal
+  double thickness = 0;          // m, nominal
+  std::vector<double> history{}; // of the material, [element][point][component]; empty: never loaded
 };
 
 struct Chamber {

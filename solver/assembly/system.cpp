@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -83,10 +84,14 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
     foils_.push_back(std::move(foil));
 
     const auto history = static_cast<std::size_t>(material::history_components(data.law)) * data.reference.area.size();
-    old_history_.emplace_back(history, 0.0);
-    new_history_.emplace_back(history, 0.0);
+    if (!data.history.empty() && data.history.size() != history) {
+      throw std::invalid_argument(fmt::format("foil `{}`: a history of {} numbers where its material has {}",
+                                              block.name, data.history.size(), history));
+    }
+    accepted_.push_back(data.history.empty() ? std::vector<double>(history, 0.0) : data.history);
   }
-  failed_element_.assign(foils_.size(), -1);
+  before_ = new_ = accepted_;
+  failed_.resize(foils_.size());
   if (model_.face_pressure.empty()) model_.face_pressure.assign(mesh.blocks.size(), Ramp{});
   const auto coordinates = static_cast<Eigen::Index>(3 * mesh.nodes.size());
   if (model_.dead_from.size() == 0) model_.dead_from = VecX::Zero(coordinates);
@@ -143,9 +148,9 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
         for (int c = 0; c < 3; ++c) target[3 * node[a] + c] += factor * values[3 * a + c];
       }
     };
-    failed_element_[index] = element::membrane_forces(
-        foil.membrane, configuration.positions, old_history_[index], new_history_[index], time_step_, with_tangent,
-        foil.energy, [&](const element::ElementBatch& batch) {
+    failed_[index] = element::membrane_forces(
+        foil.membrane, configuration.positions, accepted_[index], new_[index], time_step_, with_tangent, foil.energy,
+        [&](const element::ElementBatch& batch) {
           for (Index e = 0; e < batch.count; ++e) {
             add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
             if (with_tangent) {
@@ -153,7 +158,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
             }
           }
         });
-    if (failed_element_[index] >= 0) return;
+    if (failed_[index]) return;
 
     geometry::PressureElement<E> p;
     const auto positions_of = [&](Index e) {
@@ -190,7 +195,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
       }
     }
   });
-  if (failed_element_[index] >= 0) return;
+  if (failed_[index]) return;
 
   if (with_tangent) {
     double sum = 0;
@@ -231,7 +236,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
 
   Balance balance;
   for (std::size_t i = 0; i < foils_.size(); ++i) {
-    if (failed_element_[i] >= 0) return {false, "a material point failed"};
+    if (failed_[i]) return {false, why_failed(i, configuration)};
   }
   double residual = 0;
   double internal = 0;
@@ -339,8 +344,60 @@ MatX System::dense_load_stiffness(Index foil, const Configuration& configuration
   return stiffness;
 }
 
+std::string System::why_failed(std::size_t foil, const Configuration& configuration) const {
+  const FoilEquations& equations = foils_[foil];
+  const element::Failed& failed = *failed_[foil];
+  const geometry::Block& block = model_.mesh.blocks[static_cast<std::size_t>(equations.block)];
+  Vec3 middle = Vec3::Zero();
+  const std::span<const Index> nodes = model_.mesh.element_nodes(block, failed.element);
+  for (const Index node : nodes) {
+    middle += configuration.positions[static_cast<std::size_t>(node)] / static_cast<double>(nodes.size());
+  }
+  const Vec3& e = failed.strain;
+  return fmt::format("the material of foil `{}` has {} strain ({:.4g}, {:.4g}, {:.4g}) at ({:.4g}, {:.4g}, {:.4g}) m",
+                     block.name, failed.status == material::Status::outside_data ? "no data at" : "no state at", e[0],
+                     e[1], 0.5 * e[2], middle.x(), middle.y(), middle.z());
+}
+
 void System::accept_history() {
-  old_history_.swap(new_history_);
+  before_.swap(accepted_);
+  accepted_.swap(new_);
+  accepted_time_step_ = time_step_;
+}
+
+Balance System::evaluate_accepted(Configuration& configuration, bool with_tangent) {
+  const auto swap = [this] {
+    before_.swap(accepted_);
+    std::swap(time_step_, accepted_time_step_);
+  };
+  swap();
+  Balance balance = evaluate(configuration, with_tangent);
+  swap();
+  return balance;
+}
+
+void System::restore(Memory memory) {
+  before_ = std::move(memory.before);
+  accepted_ = std::move(memory.accepted);
+  time_step_ = memory.time_step;
+  accepted_time_step_ = memory.accepted_time_step;
+}
+
+double System::flow_error() const {
+  double largest = 0;
+  for (std::size_t f = 0; f < foils_.size(); ++f) {
+    const material::Law& law = foils_[f].membrane.law;
+    if (!material::is_rate_dependent(law)) continue;
+    const std::span<const std::string_view> names = material::history_names(law);
+    const auto which = std::ranges::find(names, material::equivalent_plastic_strain) - names.begin();
+    const double ratio = accepted_time_step_ > 0 ? time_step_ / accepted_time_step_ : 0.0;
+    for (auto i = static_cast<std::size_t>(which); i < accepted_[f].size(); i += names.size()) {
+      const double flow = new_[f][i] - accepted_[f][i];
+      const double foreseen = ratio * (accepted_[f][i] - before_[f][i]);
+      largest = std::max(largest, 0.5 * std::abs(flow - foreseen));
+    }
+  }
+  return largest;
 }
 
 } // namespace pneuma::solver::assembly

@@ -38,12 +38,12 @@ struct FoilEquations {
 
 // Sums that tell how far from equilibrium a configuration is.
 struct Balance {
-  bool possible = true;    // false: an element failed, a chamber's volume or absolute pressure is not positive
-  const char* reason = ""; // why not possible
-  double residual = 0;     // |internal - external| of the free unknowns, N
-  double force_scale = 0;  // the largest of |external|, |internal| and a hundredth of the frame's forces, N; 0: none
-  double rounding = 0;     // residual that a change of all positions in their last digit makes, N (needs a tangent)
-  double gas = 0;          // largest relative error of a chamber's law
+  bool possible = true;   // false: an element failed, a chamber's volume or absolute pressure is not positive
+  std::string reason;     // why not possible
+  double residual = 0;    // |internal - external| of the free unknowns, N
+  double force_scale = 0; // the largest of |external|, |internal| and a hundredth of the frame's forces, N; 0: none
+  double rounding = 0;    // residual that a change of all positions in their last digit makes, N (needs a tangent)
+  double gas = 0;         // largest relative error of a chamber's law
 };
 
 // Residual and tangent of a whole cushion, foil by foil side by side in threads.
@@ -78,10 +78,31 @@ public:
   MatX dense_load_stiffness(Index foil, const Configuration& configuration) const;
 
   int threads() const { return threads_; }
+
+  // Material history. `evaluate` goes from the accepted one, in one step that takes this long, s.
   void set_time_step(double seconds) { time_step_ = seconds; }
-  void accept_history(); // new history becomes old
+  double time_step() const { return time_step_; }
+  // What the last evaluation left becomes the accepted history.
+  void accept_history();
+  // Evaluates the accepted configuration once more as the step that led to it, from the history before it: the same
+  // tangent, where a new step of no length would see a foil that has stopped yielding.
+  Balance evaluate_accepted(Configuration& configuration, bool with_tangent);
+  // Accepted, of a foil, [element][point][component].
+  std::span<const double> history(Index foil) const { return accepted_[static_cast<std::size_t>(foil)]; }
+  // What a look ahead has to put back.
+  struct Memory {
+    std::vector<std::vector<double>> before, accepted; // per foil
+    double time_step = 0, accepted_time_step = 0;      // s
+  };
+  Memory memory() const { return {before_, accepted_, time_step_, accepted_time_step_}; }
+  void restore(Memory memory);
+  // Largest error of the flow in the last evaluated step, from the change of its rate since the step before, as
+  // equivalent plastic strain, -; 0 where no law flows with time. Backward Euler's local error is dt^2/2 times that of
+  // the rate (Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.7).
+  double flow_error() const;
 
 private:
+  std::string why_failed(std::size_t foil, const Configuration& configuration) const;
   void evaluate_foil(FoilEquations& foil, const Configuration& configuration, bool with_tangent);
   double net_pressure(Index block, const Configuration& configuration) const;
   double net_pressure_rate(Index block) const; // by the load factor, at the pressures that are unknown, Pa
@@ -92,10 +113,12 @@ private:
   double load_factor_ = 0; // of the last evaluation
   Vec3 origin_;            // of volumes, near the cushion
   std::vector<FoilEquations> foils_;
-  std::vector<Index> foil_of_block_;                           // -1: base
-  std::vector<double> base_volume_;                            // per block, of those without equations
-  std::vector<std::vector<double>> old_history_, new_history_; // per foil
-  std::vector<Index> failed_element_;                          // per foil, -1: none
+  std::vector<Index> foil_of_block_; // -1: base
+  std::vector<double> base_volume_;  // per block, of those without equations
+  // histories per foil: before the step that was accepted last, behind it, and behind the last evaluation
+  std::vector<std::vector<double>> before_, accepted_, new_;
+  double accepted_time_step_ = 0;                      // s
+  std::vector<std::optional<element::Failed>> failed_; // per foil
 };
 
 } // namespace pneuma::solver::assembly

@@ -17,9 +17,10 @@ Vec3 green_lagrange(const base::Mat32& deformation) {
 }
 
 template <ElementType E>
-Index membrane_forces_of(const Membrane& m, std::span<const Vec3> positions, std::span<const double> old_history,
-                         std::span<double> new_history, double dt, bool with_tangent, double& energy,
-                         const std::function<void(const ElementBatch&)>& take) {
+std::optional<Failed> membrane_forces_of(const Membrane& m, std::span<const Vec3> positions,
+                                         std::span<const double> old_history, std::span<double> new_history, double dt,
+                                         bool with_tangent, double& energy,
+                                         const std::function<void(const ElementBatch&)>& take) {
   constexpr int n = geometry::nodes_per_element(E);
   constexpr int size = 3 * n;
   using Derivatives = Eigen::Map<const Eigen::Matrix<double, n, 2, Eigen::RowMajor>>;
@@ -52,7 +53,9 @@ Index membrane_forces_of(const Membrane& m, std::span<const Vec3> positions, std
       batch.old_history = old_history.data() + offset;
       batch.new_history = new_history.data() + offset;
     }
-    if (const int failed = material::evaluate(m.law, batch); failed >= 0) return first + failed / points;
+    if (const int failed = material::evaluate(m.law, batch); failed >= 0) {
+      return Failed{first + failed / points, batch.status, batch.strain[static_cast<std::size_t>(failed)]};
+    }
 
     std::fill(force.begin(), force.end(), 0.0);
     std::fill(tangent.begin(), tangent.end(), 0.0);
@@ -92,14 +95,15 @@ Index membrane_forces_of(const Membrane& m, std::span<const Vec3> positions, std
     }
     take({first, count, force.data(), with_tangent ? tangent.data() : nullptr});
   }
-  return -1;
+  return std::nullopt;
 }
 
 } // namespace
 
-Index membrane_forces(const Membrane& membrane, std::span<const Vec3> positions, std::span<const double> old_history,
-                      std::span<double> new_history, double dt, bool with_tangent, double& energy,
-                      const std::function<void(const ElementBatch&)>& take) {
+std::optional<Failed> membrane_forces(const Membrane& membrane, std::span<const Vec3> positions,
+                                      std::span<const double> old_history, std::span<double> new_history, double dt,
+                                      bool with_tangent, double& energy,
+                                      const std::function<void(const ElementBatch&)>& take) {
   return geometry::dispatch(membrane.reference.element, [&]<ElementType E>() {
     return membrane_forces_of<E>(membrane, positions, old_history, new_history, dt, with_tangent, energy, take);
   });
@@ -113,8 +117,13 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
     const int components = material::history_components(membrane.law);
     std::vector<PointState> states(membrane.reference.area.size());
     std::vector<double> scratch(static_cast<std::size_t>(std::max(components, 1)));
+    const std::span<const std::string_view> names = material::history_names(membrane.law);
     material::Batch one;
     one.count = 1;
+    const auto component = [&](std::string_view name) {
+      const auto which = std::ranges::find(names, name);
+      return which == names.end() ? 0.0 : one.old_history[which - names.begin()];
+    };
     one.new_history = scratch.data();
     for (std::size_t i = 0; i < states.size(); ++i) {
       const std::size_t element = i / static_cast<std::size_t>(points);
@@ -127,6 +136,9 @@ std::vector<PointState> point_states(const Membrane& membrane, std::span<const V
       one.old_history = components > 0 ? history.data() + i * static_cast<std::size_t>(components) : nullptr;
       material::evaluate(membrane.law, one);
       state.stress = one.response[0].stress;
+      state.stored = one.response[0].energy;
+      state.plastic_strain = component(material::equivalent_plastic_strain);
+      state.dissipated = component(material::dissipated_energy);
       state.thickness_ratio = material::thickness_stretch(membrane.law, one.strain[0], one.old_history);
       const material::Relaxed relaxed = material::relaxed(membrane.law, one.strain[0], one.old_history);
       state.surface = relaxed.surface;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,14 +27,22 @@ struct ElementBatch {
   const double* tangent = nullptr; // [element][3 n][3 n], symmetric, N/m; null if not asked for
 };
 
+// A point whose material has no answer.
+struct Failed {
+  Index element = 0;
+  material::Status status = material::Status::failed;
+  Vec3 strain = Vec3::Zero(); // Green-Lagrange (E11, E22, 2 E12)
+};
+
 // Internal forces and, if asked for, the tangent of every element at `positions` (total Lagrangian, Green-Lagrange
 // strain, second Piola-Kirchhoff stress), in one pass; `take` is called once a batch, in order. `old_history` and
 // `new_history` are [element][point][component] (empty for laws without). Stored energy is added to `energy`, J.
-// Source: Wriggers (2008), Nonlinear Finite Element Methods, sec. 4.2 and 9.2. Returns the number of the first element
-// whose material failed, or -1.
-Index membrane_forces(const Membrane& membrane, std::span<const Vec3> positions, std::span<const double> old_history,
-                      std::span<double> new_history, double dt, bool with_tangent, double& energy,
-                      const std::function<void(const ElementBatch&)>& take);
+// Source: Wriggers (2008), Nonlinear Finite Element Methods, sec. 4.2 and 9.2. Returns the first point
+// whose material has no answer; then `take` has not seen its batch.
+std::optional<Failed> membrane_forces(const Membrane& membrane, std::span<const Vec3> positions,
+                                      std::span<const double> old_history, std::span<double> new_history, double dt,
+                                      bool with_tangent, double& energy,
+                                      const std::function<void(const ElementBatch&)>& take);
 
 // State of one stress point, for results.
 struct PointState {
@@ -44,9 +53,12 @@ struct PointState {
   double thickness_ratio = 1; // current / nominal, of the foil itself
   material::Surface surface = material::Surface::taut;
   Vec3 strain = Vec3::Zero(); // Green-Lagrange (E11, E22, 2 E12) of the foil itself: wrinkles laid flat
+  double stored = 0;          // recoverable energy per reference volume, J/m3
+  double dissipated = 0;      // so far, J/m3
+  double plastic_strain = 0;  // equivalent, so far, -
 };
 
-// Deformation and stress at all points [element][point]; the accepted history is read, not changed.
+// Deformation and stress at all points [element][point] as an accepted history leaves them, without time.
 std::vector<PointState> point_states(const Membrane& membrane, std::span<const Vec3> positions,
                                      std::span<const double> history);
 

@@ -41,6 +41,7 @@ inline constexpr std::string_view dissipated_energy = "dissipated_energy"; // so
 //   thickness_stretch  current / nominal thickness at a strain and its history
 //   stress_free_strain  at which a history leaves no stress
 // Evaluated again from the new history at the same strain, without time, it answers the same stress.
+// A law that flows with time says so by `bool is_rate_dependent() const`.
 // Pure: no allocation, no exception, no state of its own.
 template <class M>
 concept Material = requires(const M& m, const Vec3& strain, const double* old_history, double* new_history, double dt,

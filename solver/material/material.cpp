@@ -37,6 +37,18 @@ bool has_tension_field(const Law& law) {
       law);
 }
 
+bool is_rate_dependent(const Law& law) {
+  return std::visit(
+      []<Material M>(const M& m) {
+        if constexpr (requires { m.is_rate_dependent(); }) {
+          return m.is_rate_dependent();
+        } else {
+          return false;
+        }
+      },
+      law);
+}
+
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history) {
   return std::visit([&]<Material M>(const M& m) { return m.thickness_stretch(strain, history); }, law);
 }

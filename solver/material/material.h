@@ -5,6 +5,8 @@
 #include <span>
 #include <variant>
 
+#include "solver/material/j2.h"
+#include "solver/material/logarithmic.h"
 #include "solver/material/mooney_rivlin.h"
 #include "solver/material/st_venant_kirchhoff.h"
 #include "solver/material/tension_field.h"
@@ -12,8 +14,10 @@
 namespace pneuma::solver::material {
 
 static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField<MooneyRivlin>>);
+static_assert(Material<TensionField<J2>> && Material<TensionField<Logarithmic>>);
 
-using Law = std::variant<StVenantKirchhoff, MooneyRivlin, TensionField<StVenantKirchhoff>, TensionField<MooneyRivlin>>;
+using Law = std::variant<StVenantKirchhoff, MooneyRivlin, J2, Logarithmic, TensionField<StVenantKirchhoff>,
+                         TensionField<MooneyRivlin>, TensionField<J2>, TensionField<Logarithmic>>;
 
 std::span<const std::string_view> history_names(const Law& law);
 int history_components(const Law& law); // doubles a point
@@ -22,6 +26,9 @@ int history_components(const Law& law); // doubles a point
 Relaxed relaxed(const Law& law, const Vec3& strain, const double* history);
 
 bool has_tension_field(const Law& law);
+
+// Whether it flows with time: then it has an equivalent plastic strain.
+bool is_rate_dependent(const Law& law);
 
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history);
 

@@ -70,7 +70,7 @@ public:
         step_by_load();
       }
     }
-    system_.evaluate(at_, true);
+    system_.evaluate_accepted(at_, true);
     result_.load_factor = at_.load_factor;
     return std::move(result_);
   }
@@ -208,7 +208,7 @@ private:
           reason = "the path bends too much, or its end is passed but not found";
         }
       }
-      system_.evaluate(at_, true);
+      system_.evaluate_accepted(at_, true);
       length_ = std::abs(goal->to - goal->from) / cut;
       constexpr double near_enough = 1e-2; // to what is objected to, of the first step
       if (objected && length_ < near_enough * first_length()) {
@@ -256,7 +256,7 @@ private:
     at_ = from;
     way_ = way_before;
     last_ = last_before;
-    system_.evaluate(at_, true);
+    system_.evaluate_accepted(at_, true);
     return turns;
   }
 
@@ -360,7 +360,7 @@ private:
       }
       return;
     }
-    system_.evaluate(at_, true);
+    system_.evaluate_accepted(at_, true);
     result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor,
                                  away ? "the load moves the controlled quantity away from its goal"
                                       : "the cushion has no stiffness, and no small part of the load gives it one");
@@ -488,7 +488,7 @@ private:
       }
     }
     if (result_.reason.empty()) return false;
-    stand_at(from, from);
+    at_ = from;
     return true;
   }
 
@@ -511,7 +511,7 @@ private:
   }
 
   void accept(int iterations, bool end_of_part) {
-    if (!options_.only_looking) system_.accept_history();
+    system_.accept_history(); // of the last evaluation, which was here
     ++result_.steps;
     // an arc from where it is has no direction: the last one has
     result_.held = is_arc() ? Held(HeldArc{moved(system_, at_, -1.0 * *last_).positions}) : held_quantity();
@@ -617,7 +617,7 @@ private:
     Configuration before = from;
     for (const ArcGoal& goal : goals) {
       const bool needs_volume = std::holds_alternative<HeldVolume>(goal.held);
-      if (needs_volume) system_.evaluate(before, true);
+      if (needs_volume) system_.evaluate(before, false);
       const double a = value_of(goal.held, system_, before);
       if (needs_volume) system_.evaluate(at_, true);
       const double b = value_of(goal.held, system_, at_);

@@ -36,7 +36,7 @@ struct ControlledPathOptions {
   int max_steps = 500;
   int max_iterations = 15;     // of one step: beyond, it is better cut
   double smallest_step = 1e-6; // of the first step
-  bool only_looking = false;   // the materials' history is not accepted
+  bool only_looking = false;   // for limit points: bifurcations are not located
   Objection objection;         // as in LoadPathOptions
 };
 
@@ -47,7 +47,7 @@ struct ControlledPathOptions {
 // found and made a step of its own, unless the step ends beside it; where the count of negative eigenvalues changes
 // otherwise, the bifurcation. A path that is at its goal already takes no step; where a held displacement or volume
 // turns back it is stuck. `configuration` is brought into equilibrium at its load factor first, and ends as the last
-// accepted one.
+// accepted one. All steps take the time step that the system has: none, or foils that flow with time do so in each.
 PathResult follow_control(System& system, Newton& newton, Configuration& configuration, const PathControl& control,
                           const ControlledPathOptions& options, const Accept& accepted, const Report& report = {});
 

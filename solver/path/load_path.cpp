@@ -2,6 +2,8 @@
 #include "solver/path/load_path.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,7 @@ namespace {
 // A limit point within `reach` of the load beyond a good state, where load control got stuck.
 std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const Configuration& from, double reach) {
   ControlledPathOptions options;
-  options.first_step = reach;
+  options.first_step = std::abs(reach);
   options.max_steps = 12;
   options.smallest_step = 1e-2; // a look, not a search
   options.only_looking = true;
@@ -23,7 +25,11 @@ std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const C
   arc.load_factor = from.load_factor + 2 * reach;
   arc.after_peak = 1 - 1e-9;
   Configuration at = from;
-  for (const CriticalPoint& point : follow_control(system, newton, at, arc, options, {}).critical) {
+  const System::Memory memory = system.memory();
+  system.set_time_step(0);
+  const PathResult seen = follow_control(system, newton, at, arc, options, {});
+  system.restore(memory);
+  for (const CriticalPoint& point : seen.critical) {
     if (point.kind == CriticalPoint::Kind::limit) return point;
   }
   return std::nullopt;
@@ -40,11 +46,12 @@ std::string pressures_of(const System& system, const CriticalPoint& point) {
 
 // With a tension field an element that is taut nowhere folds like cloth: that it lies upside down says nothing.
 // `states` of the foil are computed when first asked for.
-bool is_folded(const assembly::FoilEquations& foil, Index element, const Configuration& at,
+bool is_folded(const System& system, Index foil, Index element, const Configuration& at,
                std::vector<element::PointState>& states) {
-  if (!material::has_tension_field(foil.membrane.law)) return false;
-  if (states.empty()) states = element::point_states(foil.membrane, at.positions, {});
-  const auto points = static_cast<std::ptrdiff_t>(foil.membrane.reference.points);
+  const element::Membrane& membrane = system.foils()[static_cast<std::size_t>(foil)].membrane;
+  if (!material::has_tension_field(membrane.law)) return false;
+  if (states.empty()) states = element::point_states(membrane, at.positions, system.history(foil));
+  const auto points = static_cast<std::ptrdiff_t>(membrane.reference.points);
   const auto first = states.begin() + element * points;
   return std::none_of(first, first + points,
                       [](const element::PointState& p) { return p.surface == material::Surface::taut; });
@@ -62,12 +69,13 @@ bool turned_over(const System& system, const Configuration& before, const Config
       const base::Mat32 g = geometry::gather<E>(nodes, at.positions) * middle.derivative;
       return g.col(0).cross(g.col(1));
     };
-    for (const assembly::FoilEquations& foil : system.foils()) {
-      const geometry::Block& block = mesh.blocks[static_cast<std::size_t>(foil.block)];
+    for (std::size_t f = 0; f < system.foils().size(); ++f) {
+      const geometry::Block& block = mesh.blocks[static_cast<std::size_t>(system.foils()[f].block)];
       std::vector<element::PointState> states;
       for (Index e = 0; e < mesh.element_count(block) && !turned; ++e) {
         const std::span<const Index> nodes = mesh.element_nodes(block, e);
-        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0 && !is_folded(foil, e, after, states);
+        turned = normal(nodes, before).dot(normal(nodes, after)) <= 0 &&
+                 !is_folded(system, static_cast<Index>(f), e, after, states);
       }
     }
   });
@@ -77,23 +85,35 @@ bool turned_over(const System& system, const Configuration& before, const Config
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report) {
   PathResult result;
+  const std::vector<Moment>& schedule = options.schedule;
+  if (schedule.size() < 2) throw std::invalid_argument("a schedule has a beginning and an end");
+  configuration.load_factor = result.load_factor = schedule.front().load_factor;
   const double part = 1.0 / options.parts;
-  double length = part;
-  int part_number = 1; // the part being walked
   constexpr int easy_iterations = 8;
-  while (part_number <= options.parts) {
+  double length = part; // of a stretch
+  int part_number = 1;  // the part being walked
+  double walked = 0;    // of the stretch
+  const auto stuck = [&](std::string reason) {
+    system.evaluate_accepted(configuration, true);
+    result.reason = std::move(reason);
+    return result;
+  };
+  std::size_t stretch = 0;
+  while (stretch + 1 < schedule.size()) {
+    const Moment& begin = schedule[stretch];
+    const Moment& end = schedule[stretch + 1];
     if (result.steps == options.max_steps) {
-      system.evaluate(configuration, true);
-      result.reason = fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options.max_steps,
-                                  result.load_factor);
-      return result;
+      return stuck(fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options.max_steps,
+                               result.load_factor));
     }
     const double goal = part_number == options.parts ? 1.0 : part * part_number;
-    const double left = goal - result.load_factor;
+    const double left = goal - walked;
     // no sliver of a step at the end of a part
     const bool to_goal = length > 0.999 * left;
+    const double next = to_goal ? goal : walked + (length > 0.6 * left ? 0.5 * left : length);
     Configuration trial = configuration;
-    trial.load_factor = to_goal ? goal : result.load_factor + (length > 0.6 * left ? 0.5 * left : length);
+    trial.load_factor = std::lerp(begin.load_factor, end.load_factor, next);
+    system.set_time_step((next - walked) * (end.time - begin.time));
     Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
     });
@@ -101,37 +121,52 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       outcome.converged = false;
       outcome.reason = "an element would be turned over";
     }
+    const double flow_error = outcome.converged && system.time_step() > 0 ? system.flow_error() : 0;
+    if (flow_error > options.flow_tolerance && next - walked > options.smallest_step) {
+      constexpr double safety = 0.8; // the error goes with the square of the step
+      length = (next - walked) * std::max(0.1, safety * std::sqrt(options.flow_tolerance / flow_error));
+      continue;
+    }
     const std::string objection = outcome.converged && options.objection ? options.objection(trial) : "";
     if (!outcome.converged || !objection.empty()) {
       const double reach = trial.load_factor - result.load_factor;
-      length = reach / 4;
+      length = (next - walked) / 4;
       constexpr double near_enough = 1e-3; // to what is objected to
       if (length < (objection.empty() ? options.smallest_step : std::max(options.smallest_step, near_enough))) {
-        system.evaluate(configuration, true);
         result.end = objection.empty() ? PathEnd::stuck : PathEnd::stopped;
-        result.reason = objection.empty() ? fmt::format("no equilibrium found beyond load factor {:.6g}: {}",
-                                                        result.load_factor, outcome.reason)
-                                          : objection;
-        if (const auto limit = limit_ahead(system, newton, configuration, reach)) {
+        const auto limit = reach != 0 ? limit_ahead(system, newton, configuration, reach) : std::nullopt;
+        if (limit) {
           result.critical.push_back(*limit);
           result.critical.back().step = result.steps;
-          result.reason = fmt::format(
-              "limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
-              "volume, displacement or arc_length goes on{}{}",
-              limit->load_factor, pressures_of(system, *limit), objection.empty() ? "" : "; behind it ", objection);
+          return stuck(fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
+                                   "volume, displacement or arc_length goes on{}{}",
+                                   limit->load_factor, pressures_of(system, *limit),
+                                   objection.empty() ? "" : "; behind it ", objection));
         }
-        system.evaluate(configuration, true);
-        return result;
+        return stuck(!objection.empty() ? objection
+                                        : fmt::format("no equilibrium found beyond load factor {:.6g}: {}",
+                                                      result.load_factor, outcome.reason));
       }
       continue;
     }
     system.accept_history();
     configuration = std::move(trial);
     result.load_factor = configuration.load_factor;
+    const double step_length = next - walked;
+    walked = next;
     ++result.steps;
-    if (to_goal) ++part_number;
-    if (outcome.iterations <= easy_iterations) length = std::min(2 * length, part);
-    const Step step{result.steps, result.load_factor, outcome.iterations, to_goal};
+    if (outcome.iterations <= easy_iterations) {
+      double growth = 2;
+      if (flow_error > 0) growth = std::min(growth, 0.8 * std::sqrt(options.flow_tolerance / flow_error));
+      length = std::min(growth * (flow_error > 0 ? step_length : length), part);
+    }
+    const Step step{result.steps, result.load_factor, outcome.iterations, to_goal,
+                    std::lerp(begin.time, end.time, walked)};
+    if (to_goal && ++part_number > options.parts) {
+      ++stretch;
+      part_number = 1;
+      walked = 0;
+    }
     if (accepted) accepted(step, configuration);
   }
   result.end = PathEnd::reached;

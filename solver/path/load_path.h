@@ -11,6 +11,7 @@ struct Step {
   double load_factor = 0;
   int iterations = 0;
   bool end_of_part = false;
+  double time = 0; // s, since the start of the path
 };
 
 enum class PathEnd : std::uint8_t { reached, stopped, stuck };
@@ -42,16 +43,26 @@ using Report = std::function<void(int step, const Iteration&)>;
 // Why a state that was found must not be accepted (foils that pass through each other); empty: it may.
 using Objection = std::function<std::string(const Configuration&)>;
 
+// What part of the load acts when, s; linear between two of them.
+struct Moment {
+  double time = 0;
+  double load_factor = 0;
+};
+
 struct LoadPathOptions {
-  int parts = 1;               // the path is reported at `parts` equal parts; between them steps are automatic
-  double smallest_step = 1e-5; // of the load factor
+  // The way of the load: time does not fall, and does not stand still without a change of the load.
+  std::vector<Moment> schedule = {{0, 0}, {0, 1}};
+  int parts = 1;                // each stretch is reported at `parts` equal parts; between them steps are automatic
+  double smallest_step = 1e-5;  // of a stretch of the schedule
+  double flow_tolerance = 1e-5; // error of a step's flow in foils that flow with time, as equivalent strain
   int max_steps = 100000;
   Objection objection; // is answered by shorter steps; the path ends `stopped` a thousandth of the load before it
 };
 
-// Load control: from load factor 0 to 1, whole parts first, cut back by four on any failure, doubled after easy
-// success. `accepted` sees every accepted step, with the system evaluated there; `configuration` ends as the last
-// accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
+// Load control: along the schedule, whole parts first, cut back by four on any failure, doubled after easy success;
+// foils that flow with time decide on its steps, too (flow_tolerance). `accepted` sees every accepted step, with the
+// system evaluated there; `configuration` ends as the last accepted one. Where it gets stuck it looks for a limit point
+// just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report = {});
 

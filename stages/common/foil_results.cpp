@@ -77,25 +77,29 @@ geometry::Block not_slack(const geometry::Mesh& mesh, const geometry::Block& blo
   return carrying;
 }
 
-// Nodal fields and extremes from `tensors` [element][point][cauchy 3, C 3].
+// What is recovered at the nodes: Cauchy stress 3, C 3, equivalent plastic strain.
+constexpr std::size_t recovered = 7;
+
+// Nodal fields and extremes from `values` [element][point][recovered].
 void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry::StressRule rule,
-             std::span<const Index> strip_of_element, std::span<const Vec3> now, const std::vector<double>& tensors,
+             std::span<const Index> strip_of_element, std::span<const Vec3> now, const std::vector<double>& values,
              FoilResults& r) {
   const std::size_t nodes = mesh.nodes.size();
   for (std::vector<double>* field :
-       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2}) {
+       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2, &r.nodal_plastic_strain}) {
     field->assign(nodes, 0.0);
   }
   bool first = true;
   std::vector<char> seen(nodes, 0); // by an earlier strip
-  const auto take = [&](const geometry::Block& piece, std::span<const double> values) {
-    const std::vector<double> nodal = solver::recovery::recover_at_nodes(mesh, piece, rule, now, values, 6);
+  const auto take = [&](const geometry::Block& piece, std::span<const double> at_points) {
+    const std::vector<double> nodal =
+        solver::recovery::recover_at_nodes(mesh, piece, rule, now, at_points, static_cast<Index>(recovered));
     std::vector<Index> own = piece.connectivity;
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
     for (const Index node : own) {
       const auto k = static_cast<std::size_t>(node);
-      const double* t = nodal.data() + 6 * k;
+      const double* t = nodal.data() + recovered * k;
       Pair stress = eigenvalues(t[0], t[1], t[2]);
       if (r.tension_field) { // the fit overshoots where tension ends
         stress = {std::max(stress.larger, 0.0), std::max(stress.smaller, 0.0)};
@@ -110,20 +114,21 @@ void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry:
       set(r.stress2, r.nodal_stress2, stress.smaller);
       set(r.strain1, r.nodal_strain1, strain.larger);
       set(r.strain2, r.nodal_strain2, strain.smaller);
+      if (r.plastic) set(r.plastic_strain, r.nodal_plastic_strain, std::max(t[6], 0.0)); // the fit overshoots
       seen[k] = 1;
       first = false;
     }
   };
-  if (strip_of_element.empty()) return take(block, tensors);
-  const std::size_t per_element = tensors.size() / strip_of_element.size();
+  if (strip_of_element.empty()) return take(block, values);
+  const std::size_t per_element = values.size() / strip_of_element.size();
   for (const Piece& piece : pieces_of(mesh, block, strip_of_element)) {
-    std::vector<double> values;
-    values.reserve(piece.elements.size() * per_element);
+    std::vector<double> of_piece;
+    of_piece.reserve(piece.elements.size() * per_element);
     for (const std::size_t e : piece.elements) {
-      const auto begin = tensors.begin() + static_cast<std::ptrdiff_t>(e * per_element);
-      values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(per_element));
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(e * per_element);
+      of_piece.insert(of_piece.end(), begin, begin + static_cast<std::ptrdiff_t>(per_element));
     }
-    take(piece.block, values);
+    take(piece.block, of_piece);
   }
 }
 
@@ -157,15 +162,17 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   r.tension_field = solver::material::has_tension_field(membrane.law);
 
   const std::vector<solver::element::PointState> points = solver::element::point_states(membrane, now, history);
-  std::vector<double> tensors; // cauchy 3, C 3
-  tensors.reserve(points.size() * 6);
+  const std::span<const std::string_view> names = solver::material::history_names(membrane.law);
+  r.plastic = std::ranges::find(names, solver::material::equivalent_plastic_strain) != names.end();
+  std::vector<double> values;
+  values.reserve(points.size() * recovered);
   r.thickness_min = membrane.thickness;
   double total = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const solver::element::PointState& p = points[i];
     const Vec3 c(1 + 2 * p.strain[0], 1 + 2 * p.strain[1], p.strain[2]);
     const double shear = 0.5 * (p.cauchy(0, 1) + p.cauchy(1, 0));
-    tensors.insert(tensors.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear, c[0], c[1], c[2]});
+    values.insert(values.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear, c[0], c[1], c[2], p.plastic_strain});
     r.cauchy.insert(r.cauchy.end(), {p.cauchy(0, 0), p.cauchy(1, 1), shear});
     r.thickness.push_back(membrane.thickness * p.thickness_ratio);
     r.thickness_min = std::min(r.thickness_min, r.thickness.back());
@@ -181,7 +188,10 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
     gauss(r.stress2, stress.smaller);
     gauss(r.strain1, strain.larger);
     gauss(r.strain2, strain.smaller);
+    gauss(r.plastic_strain, p.plastic_strain);
     const double area = membrane.reference.area[i];
+    r.stored += membrane.thickness * area * p.stored;
+    r.dissipated += membrane.thickness * area * p.dissipated;
     total += area;
     if (p.surface == Surface::wrinkled) r.wrinkled_area += area;
     if (p.surface == Surface::slack) r.slack_area += area;
@@ -193,7 +203,7 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
   }
   for (double* part : {&r.compressed_area, &r.wrinkled_area, &r.slack_area}) *part /= total;
 
-  recover(mesh, b, membrane.reference.rule, strip_of_element, now, tensors, r);
+  recover(mesh, b, membrane.reference.rule, strip_of_element, now, values, r);
   const geometry::Block carrying = not_slack(mesh, b, r.surface);
   if (carrying.connectivity.empty()) {
     r.sag = r.max_deflection = std::nan("");
@@ -233,11 +243,14 @@ void summarize(const FoilResults& r, Summary& summary) {
     summary.set(foil + "wrinkled_area_fraction", r.wrinkled_area);
     summary.set(foil + "slack_area_fraction", r.slack_area);
   }
-  const std::pair<const char*, const Extreme*> all[] = {{"von_mises", &r.von_mises},
-                                                        {"principal_stress_1", &r.stress1},
-                                                        {"principal_stress_2", &r.stress2},
-                                                        {"principal_strain_1", &r.strain1},
-                                                        {"principal_strain_2", &r.strain2}};
+  summary.set(foil + "energy.stored", r.stored);
+  if (r.plastic) summary.set(foil + "energy.dissipated", r.dissipated);
+  std::vector<std::pair<const char*, const Extreme*>> all = {{"von_mises", &r.von_mises},
+                                                             {"principal_stress_1", &r.stress1},
+                                                             {"principal_stress_2", &r.stress2},
+                                                             {"principal_strain_1", &r.strain1},
+                                                             {"principal_strain_2", &r.strain2}};
+  if (r.plastic) all.emplace_back("plastic_strain", &r.plastic_strain);
   for (const auto& [name, extreme] : all) {
     const std::string key = foil + name + ".";
     summary.set(key + "max", extreme->max);
@@ -265,9 +278,11 @@ void add_fields(const std::vector<FoilResults>& results, std::span<const Vec3> s
       {"principal_stress_1", "Pa", &FoilResults::nodal_stress1},
       {"principal_stress_2", "Pa", &FoilResults::nodal_stress2},
       {"principal_strain_1", "1", &FoilResults::nodal_strain1},
-      {"principal_strain_2", "1", &FoilResults::nodal_strain2}};
+      {"principal_strain_2", "1", &FoilResults::nodal_strain2},
+      {"plastic_strain", "1", &FoilResults::nodal_plastic_strain}};
   for (const auto& [name, unit, values] : nodal) {
     for (const FoilResults& r : results) {
+      if (values == &FoilResults::nodal_plastic_strain && !r.plastic) continue;
       Field field{std::string(name) + "." + r.name,
                   unit,
                   Location::point,

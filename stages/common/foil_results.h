@@ -29,10 +29,14 @@ struct FoilResults {
   bool tension_field = false; // the law has one; only then are there
   double wrinkled_area = 0;   // parts of the stress-free area
   double slack_area = 0;
+  bool plastic = false; // the law has a plastic strain; only then are there
+  Extreme plastic_strain;
+  double dissipated = 0; // J, so far
+  double stored = 0;     // J, recoverable
   Extreme von_mises, stress1, stress2, strain1, strain2;
 
-  // recovered, per node of the mesh (0 where the foil has none): Pa, Pa, Pa, -, -
-  std::vector<double> nodal_von_mises, nodal_stress1, nodal_stress2, nodal_strain1, nodal_strain2;
+  // recovered, per node of the mesh (0 where the foil has none): Pa, Pa, Pa, -, -, -
+  std::vector<double> nodal_von_mises, nodal_stress1, nodal_stress2, nodal_strain1, nodal_strain2, nodal_plastic_strain;
   // at the stress points: Cauchy stress (s11, s22, s12), Pa, in the carried material frame; thickness, m; surface
   // state: 0 taut, 1 wrinkled, 2 slack
   std::vector<double> cauchy, thickness, surface;
