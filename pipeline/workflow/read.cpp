@@ -75,23 +75,9 @@ ReadResult read_workflow(const std::filesystem::path& file) {
 
 MaterialsResult read_materials(const std::filesystem::path& file, const std::vector<std::string>& names) {
   Builder builder(file, false);
-  const std::string name = file.generic_string();
-  const std::string text = schema::read_text(file, {name, 1, 1}, builder.problems);
-  const Node tree = schema::parse_yaml(text, name, builder.problems);
-  MaterialsResult result;
-  for (const schema::Entry& entry : tree.entries) result.names.push_back(entry.key);
-  const std::vector<std::string>& asked = names.empty() ? result.names : names;
-  if (tree.kind != NodeKind::null) {
-    const std::map<std::string, Material> found = builder.build_materials(tree, {asked.begin(), asked.end()});
-    for (const std::string& one : result.names) {
-      const bool is_asked = std::find(asked.begin(), asked.end(), one) != asked.end();
-      if (const auto at = found.find(one); at != found.end() && is_asked) result.materials.push_back(at->second);
-    }
-  } else if (builder.problems.empty()) {
-    builder.problems.push_back({tree.mark, "the file is empty; it holds materials: NAME: {law: elastic, ...}"});
-  }
+  MaterialsResult result = builder.build_materials(names);
   result.problems = std::move(builder.problems);
-  put_in_order(result.problems, name);
+  put_in_order(result.problems, file.generic_string());
   return result;
 }
 
