@@ -19,7 +19,8 @@ namespace {
 namespace workflow = pipeline::workflow;
 using base::say;
 
-constexpr double standard_rate = 1e-3; // 1/s, of quasi-static tests
+constexpr double standard_rate = 1e-3;                                 // 1/s, of quasi-static tests
+constexpr double zero_celsius = 273.15, standard_temperature = 296.15; // K
 
 std::vector<workflow::Material> read_materials(const Options& options) {
   workflow::MaterialsResult result = workflow::read_materials(options.materials, options.names);
@@ -39,6 +40,22 @@ std::vector<workflow::Material> read_materials(const Options& options) {
   }
   if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
   return std::move(result.materials);
+}
+
+// A material with its law at the temperature asked for.
+workflow::Material at_temperature(const workflow::Material& material, const Options& options) {
+  workflow::Material result = material;
+  const double at = options.temperature.value_or(standard_temperature);
+  if (const auto range = workflow::temperatures_of(material)) {
+    if (at < (*range)[0] || at > (*range)[1]) {
+      throw base::InputError(fmt::format("{}: at {:g} degC `{}` has no values: its table goes from {:g} to {:g} degC",
+                                         to_string(material.mark), at - zero_celsius, material.name,
+                                         (*range)[0] - zero_celsius, (*range)[1] - zero_celsius));
+    }
+    result.law = workflow::law_at(material, at);
+    result.other.clear();
+  }
+  return result;
 }
 
 // The curve of a material as if a machine had measured it.
@@ -70,9 +87,12 @@ public:
       : options_(options), tests_(tests), drawn_tests_(tests) {}
 
   void show(const workflow::Material& material) {
-    workflow::Material taut = material;
+    workflow::Material taut = at_temperature(material, options_);
     taut.tension_field = false;
     say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
+    if (const auto range = workflow::temperatures_of(material); options_.temperature && !range) {
+      say("  does not depend on the temperature");
+    }
     if (material.tension_field) say("  its tension field changes nothing in tension and is left out");
     show(material.name, common::law_of(taut));
   }
@@ -82,6 +102,7 @@ public:
     if (tests_.empty()) drawn_tests_ = {test};
     first_drawn_ = curves_.size();
     // what a curve in tension does not tell
+    const workflow::Material here = at_temperature(material, options_);
     double nu = 0.5;
     bool logarithmic = true;
     std::visit(
@@ -89,7 +110,7 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        material.law);
+        here.law);
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::string name = fmt::format("{}_{}", material.name, options_.branches);
     say(fmt::format("{}: the {} hardening branches nearest to {}, nu and kind of strain as of {}", name,
