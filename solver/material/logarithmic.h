@@ -97,7 +97,7 @@ struct Logarithmic {
       new_history[1] = grown.x22;
       new_history[2] = grown.x12;
       new_history[3] = alpha + step.increment;
-      new_history[4] = dissipated + step.increment * step.equivalent_stress;
+      new_history[4] = dissipated + flow.dissipation(alpha, step.increment, step.equivalent_stress);
     }
 
     const double i1 = 1 / c1;
