@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a law costs in the elements: internal forces and tangent of a stretched sheet, each law over St. Venant-Kirchhoff
-// in the same run. Ratios are reported, not asserted.
+// What a law costs in the elements: internal forces and tangent of a stretched sheet, each law over St.
+// Venant-Kirchhoff in the same run. Ratios are reported, not asserted.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -32,8 +33,8 @@ class LawCost : public testing::TestWithParam<ElementType> {};
 TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
   const ElementType type = GetParam();
   const bool quadratic = geometry::is_quadratic(type);
-  const geometry::Mesh mesh =
-      geometry::meshing::mesh_plan(geometry::Rectangle{2, 1}, {type, {}, {quadratic ? 40 : 80, quadratic ? 20 : 40}});
+  const std::array<int, 2> divisions = quadratic ? std::array{40, 20} : std::array{80, 40};
+  const geometry::Mesh mesh = geometry::meshing::mesh_plan(geometry::Rectangle{2, 1}, {type, {}, divisions});
   const std::vector<base::Index>& connectivity = mesh.blocks.front().connectivity;
   element::Membrane membrane;
   membrane.connectivity = connectivity;
@@ -65,8 +66,7 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
   const std::vector<Vec3> large = stretched(0.2);
   std::vector<std::pair<std::string, Measured>> laws;
   const auto add = [&](const char* name, const material::Law& law, const std::vector<Vec3>& positions) {
-    const auto size =
-        static_cast<std::size_t>(material::history_components(law)) * membrane.reference.area.size();
+    const auto size = static_cast<std::size_t>(material::history_components(law)) * membrane.reference.area.size();
     laws.push_back({name, {law, positions, std::vector<double>(size), std::vector<double>(size)}});
   };
   add("St. Venant-Kirchhoff", elastic, small);
@@ -77,8 +77,7 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
   add("logarithmic, elastic", material::Logarithmic{elasticity, never}, small);
   add("logarithmic, flows", material::Logarithmic{elasticity, etfe}, large);
   add("logarithmic, creeps", material::Logarithmic{elasticity, creeping}, large);
-  add("tension field of it, flows",
-      material::TensionField<material::Logarithmic>{{elasticity, etfe}}, large);
+  add("tension field of it, flows", material::TensionField<material::Logarithmic>{{elasticity, etfe}}, large);
 
   double sum = 0;
   const auto run = [&](Measured& m) {
@@ -115,7 +114,7 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
 
 INSTANTIATE_TEST_SUITE_P(Elements, LawCost,
                          testing::Values(ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9),
-                         [](const auto& info) { return std::string(geometry::name(info.param)); });
+                         [](const auto& element) { return std::string(geometry::name_of(element.param)); });
 
 } // namespace
 } // namespace pneuma::tests
