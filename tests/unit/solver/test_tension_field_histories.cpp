@@ -142,7 +142,7 @@ struct Counting : M {
   }
 };
 
-TYPED_TEST(PlasticTensionField, AsksItsLawSomeTimesWhereItIsWrinkledAndItsHistoryLiesAslant) {
+TYPED_TEST(PlasticTensionField, AsksItsLawFewTimesWhereItsHistoryLiesAslant) {
   std::mt19937 random(41);
   using Law = Counting<TypeParam>;
   int points = 0;
@@ -160,7 +160,10 @@ TYPED_TEST(PlasticTensionField, AsksItsLawSomeTimesWhereItIsWrinkledAndItsHistor
     sum += Law::count;
     largest = std::max(largest, Law::count);
   }
-  std::printf("[ measured ] %d points, mean %.1f, largest %d\n", points, static_cast<double>(sum) / points, largest);
+  EXPECT_GT(points, 100);
+  // measured: 4.8 and 7 with J2, whose wrinkles lie across the principal elastic strain; 19 and 26 where they turn
+  EXPECT_LT(static_cast<double>(sum) / points, logarithmic<TypeParam> ? 25 : 6);
+  EXPECT_LT(largest, logarithmic<TypeParam> ? 50 : 10);
 }
 
 } // namespace
