@@ -100,7 +100,7 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
     m.positions = further;
     m.best = 1e9;
   }
-  for (int i = 0; i < 15; ++i) {
+  for (int i = 0; i < 7; ++i) {
     for (auto& [name, m] : laws) run(m);
   }
   EXPECT_TRUE(std::isfinite(sum));
