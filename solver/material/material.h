@@ -8,16 +8,20 @@
 #include "solver/material/j2.h"
 #include "solver/material/logarithmic.h"
 #include "solver/material/mooney_rivlin.h"
+#include "solver/material/ogden.h"
+#include "solver/material/orthotropic.h"
 #include "solver/material/st_venant_kirchhoff.h"
 #include "solver/material/tension_field.h"
 
 namespace pneuma::solver::material {
 
 static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField<MooneyRivlin>>);
+static_assert(Material<TensionField<Orthotropic>> && Material<TensionField<Ogden>>);
 static_assert(Material<TensionField<J2>> && Material<TensionField<Logarithmic>>);
 
-using Law = std::variant<StVenantKirchhoff, MooneyRivlin, J2, Logarithmic, TensionField<StVenantKirchhoff>,
-                         TensionField<MooneyRivlin>, TensionField<J2>, TensionField<Logarithmic>>;
+using Law = std::variant<StVenantKirchhoff, Orthotropic, MooneyRivlin, Ogden, J2, Logarithmic,
+                         TensionField<StVenantKirchhoff>, TensionField<Orthotropic>, TensionField<MooneyRivlin>,
+                         TensionField<Ogden>, TensionField<J2>, TensionField<Logarithmic>>;
 
 std::span<const std::string_view> history_names(const Law& law);
 int history_components(const Law& law); // doubles a point
