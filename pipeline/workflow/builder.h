@@ -76,6 +76,7 @@ private:
   static SolverOptions options_of(const Value& stage);
   // `gas`: of the chambers in this stage; none: regulated
   Control control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas = {});
+  std::vector<Moment> schedule_of(const Value& stage, const std::string& path);
   DisplacementControl displacement_control(const Value& control);
   VolumeControl volume_control(const Value& control, const std::map<std::string, Gas>& gas);
   ArcLengthControl arc_length_control(const Value& control);

@@ -148,15 +148,41 @@ SolverOptions Builder::options_of(const Value& stage) {
 }
 
 Control Builder::control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas) {
-  const Value* control = stage["control"];
-  if (control == nullptr) return {};
   Control out;
+  out.schedule = schedule_of(stage, path);
+  const Value* control = stage["control"];
+  if (control == nullptr) return out;
   out.steps = optional_integer(*control, "steps");
   if (control->members.empty()) copy_origin(path + ".control", path + ".control.type"); // `control: load`
   if (control->text == "displacement") out.kind = displacement_control(*control);
   if (control->text == "volume") out.kind = volume_control(*control, gas);
   if (control->text == "arc_length") out.kind = arc_length_control(*control);
+  for (const char* key : {"duration", "history"}) {
+    if (control->text != "load") refuse(stage, key, "is for load control: on the path of another no time passes");
+  }
   return out;
+}
+
+std::vector<Moment> Builder::schedule_of(const Value& stage, const std::string& path) {
+  if (const Value* duration = stage["duration"]) {
+    copy_origin(path + ".duration", path + ".history.0.time");
+    return {{duration->number, 1}};
+  }
+  std::vector<Moment> schedule;
+  const Value* history = stage["history"];
+  if (history == nullptr) return schedule;
+  Moment last;
+  for (const Value& item : history->items) {
+    const Moment moment{number_of(item, "time"), number_of(item, "factor")};
+    if (moment.time < last.time) {
+      fail(item.mark, fmt::format("time goes back: {} s after {} s", moment.time, last.time));
+    } else if (moment.time == last.time && moment.factor == last.factor) {
+      fail(item.mark, "nothing happens up to this moment: neither time nor factor change");
+    }
+    last = moment;
+    schedule.push_back(moment);
+  }
+  return schedule;
 }
 
 DisplacementControl Builder::displacement_control(const Value& control) {

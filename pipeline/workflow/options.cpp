@@ -301,16 +301,31 @@ Option pattern() {
       .not_both("strips_per_foil", "curves");
 }
 
+// Foils that flow with time need to know how long the stage takes.
+Options time() {
+  const Option moment = group("moment",
+                              {quantity("time", "s", "since the stage began").required().at_least(0, "at least 0 s"),
+                               number("factor", "part of what the stage states that acts then").required()},
+                              "a moment");
+  return {quantity("duration", "s", "in which all that the stage states grows evenly; without it no time passes")
+              .positive()
+              .usual(1e-3, 1e10, "usually from milliseconds to 100 years"),
+          list("history", moment, "what acts when, from nothing at 0 s, linear between").items(1, 100000)};
+}
+
 Option inflate() {
   return group("inflate",
-               start() + Options{pressures("reached with regulated air").required(),
-                                 choice("reference",
-                                        {value("prestressed", "the found form carries its prestress"),
-                                         value("stress_free", "the found form is free of stress")},
-                                        "of a found form"),
-                                 table("prestress", isotropic_prestress(), "of a flat start, per foil or `all`"),
-                                 contact(), control(), path_options()},
-               "raises the pressure");
+               start() +
+                   Options{pressures("reached with regulated air").required(),
+                           choice("reference",
+                                  {value("prestressed", "the found form carries its prestress"),
+                                   value("stress_free", "the found form is free of stress")},
+                                  "of a found form"),
+                           table("prestress", isotropic_prestress(), "of a flat start, per foil or `all`"), contact(),
+                           control(), path_options()} +
+                   time(),
+               "raises the pressure")
+      .not_both("duration", "history");
 }
 
 Option wind() {
@@ -356,15 +371,15 @@ Option wind() {
              patch, either("region", {all, part}, "where it acts").otherwise("all")},
             "a load")
           .exactly_one({"wind", "snow", "patch"});
-  const char* plain = "all that a stage states is varied together";
   return group("wind",
-               start() + Options{table("gas", gas, "per chamber [regulated]").otherwise("{}"),
-                                 list("loads", load, "what acts").otherwise("[]"),
-                                 table("factors", number("LOAD", "factor"), "of the loads, by name").otherwise("{}"),
-                                 text("duration", "").unavailable(plain),
-                                 list("history", text("point", ""), "").unavailable(plain), contact(), control(),
-                                 path_options()},
-               "loads the inflated cushion");
+               start() +
+                   Options{table("gas", gas, "per chamber [regulated]").otherwise("{}"),
+                           list("loads", load, "what acts").otherwise("[]"),
+                           table("factors", number("LOAD", "factor"), "of the loads, by name").otherwise("{}"),
+                           contact(), control(), path_options()} +
+                   time(),
+               "loads the inflated cushion")
+      .not_both("duration", "history");
 }
 
 Option stages(bool in_stage_file) {

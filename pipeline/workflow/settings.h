@@ -125,9 +125,17 @@ struct ArcLengthControl {
 };
 
 // How the path is followed.
+// What part of a stage's load acts when, s.
+struct Moment {
+  double time = 0;
+  double factor = 0;
+};
+
 struct Control {
   std::variant<LoadControl, DisplacementControl, VolumeControl, ArcLengthControl> kind;
-  std::optional<int> steps; // output at n equal parts of the path; none: automatic steps
+  std::optional<int>
+      steps; // output at n equal parts of the path (of each stretch between two moments); none: automatic
+  std::vector<Moment> schedule; // of load control, from nothing at 0 s, linear between; empty: no time passes
 };
 
 enum class Reference : std::uint8_t { prestressed, stress_free };

@@ -188,6 +188,15 @@ void add_path(Node& node, bool contact_stops, const Control& control) {
   std::visit([&](const auto& kind) { add_control(path, kind); }, control.kind);
   if (control.steps) add(path, "steps", plain(*control.steps));
   add(node, "control", path);
+  if (control.schedule.empty()) return;
+  Node history = empty_list();
+  for (const Moment& moment : control.schedule) {
+    Node item = empty_map();
+    add(item, "time", quantity(moment.time, "s"));
+    add(item, "factor", plain(moment.factor));
+    history.items.push_back(item);
+  }
+  add(node, "history", history);
 }
 
 void add_settings(Node& node, const FormfindSettings& settings) {

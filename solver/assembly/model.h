@@ -59,6 +59,7 @@ struct Model {
   std::vector<Ramp> face_pressure; // per block: pressure on the whole foil beside the chambers', along its normal, Pa
   std::vector<PressureZone> zones;
   VecX dead_from, dead_to; // [3 node + component], N: forces that keep their direction
+  VecX move;               // [3 node + component], m: held coordinates move by so much from load factor 0 to 1
   // Where volumes are measured from; any point serves closed chambers (none: the middle of the nodes). Where a rim is
   // free to move in a plane (symmetry), the plane stands for the missing wall and must contain this point.
   std::optional<Vec3> origin;

@@ -96,12 +96,35 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
   const auto coordinates = static_cast<Eigen::Index>(3 * mesh.nodes.size());
   if (model_.dead_from.size() == 0) model_.dead_from = VecX::Zero(coordinates);
   if (model_.dead_to.size() == 0) model_.dead_to = VecX::Zero(coordinates);
+  std::vector<std::uint8_t> in_base(model_.fixed.size(), 0);
+  for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
+    if (model_.foils[b]) continue;
+    for (const Index node : mesh.blocks[b].connectivity) {
+      for (std::size_t c = 0; c < 3; ++c) in_base[3 * static_cast<std::size_t>(node) + c] = 1;
+    }
+  }
+  for (Eigen::Index k = 0; k < model_.move.size(); ++k) {
+    if (model_.move[k] == 0) continue;
+    if (model_.fixed[static_cast<std::size_t>(k)] == 0 || in_base[static_cast<std::size_t>(k)] != 0) {
+      const Vec3& x = mesh.nodes[static_cast<std::size_t>(k / 3)];
+      throw base::InputError(fmt::format(
+          "the node at ({:.6g}, {:.6g}, {:.6g}) m cannot be moved: only held nodes of foils are", x.x(), x.y(), x.z()));
+    }
+    moving_.push_back(static_cast<Index>(k));
+  }
 }
 
 Index System::unknowns() const {
   Index count = 0;
   for (const FoilEquations& foil : foils_) count += foil.pattern.size;
   return count;
+}
+
+void System::place_edges(Configuration& configuration) const {
+  for (const Index k : moving_) {
+    const auto node = static_cast<std::size_t>(k / 3);
+    configuration.positions[node][k % 3] = model_.mesh.nodes[node][k % 3] + configuration.load_factor * model_.move[k];
+  }
 }
 
 double System::net_pressure(Index block, const Configuration& configuration) const {
@@ -134,8 +157,9 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
   foil.energy = 0;
   foil.internal.setZero(coordinates);
   foil.external.setZero(coordinates);
-  VecX unit = VecX::Zero(coordinates);  // force of a unit pressure
-  VecX drive = VecX::Zero(coordinates); // d force of the zones / d load factor
+  VecX unit = VecX::Zero(coordinates); // force of a unit pressure
+  // d force / d load factor of the zones and by what the edges move, at the free positions
+  VecX drive = VecX::Zero(coordinates);
   if (with_tangent) foil.tangent.assign(foil.pattern.row.size(), 0.0);
 
   const std::span<const Index> connectivity = foil.membrane.connectivity;
@@ -148,16 +172,28 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
         for (int c = 0; c < 3; ++c) target[3 * node[a] + c] += factor * values[3 * a + c];
       }
     };
-    failed_[index] = element::membrane_forces(
-        foil.membrane, configuration.positions, accepted_[index], new_[index], time_step_, with_tangent, foil.energy,
-        [&](const element::ElementBatch& batch) {
-          for (Index e = 0; e < batch.count; ++e) {
-            add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
-            if (with_tangent) {
-              linear::scatter_add(foil.scatter, batch.first + e, batch.tangent + e * size * size, foil.tangent);
-            }
-          }
-        });
+    using ElementMatrix = Eigen::Matrix<double, size, size>;
+    // factor * derivative * moves of the element's edges
+    const auto add_moves = [&](Index e, const Eigen::Map<const ElementMatrix>& derivative, double factor) {
+      if (moving_.empty()) return;
+      const Index* node = connectivity.data() + static_cast<std::size_t>(e) * n;
+      Eigen::Vector<double, size> move;
+      for (int a = 0; a < n; ++a) move.template segment<3>(3 * a) = model_.move.segment<3>(3 * node[a]);
+      if (move.isZero(0)) return;
+      const Eigen::Vector<double, size> change = derivative * move;
+      add(e, change.data(), factor, drive);
+    };
+    failed_[index] =
+        element::membrane_forces(foil.membrane, configuration.positions, accepted_[index], new_[index], time_step_,
+                                 with_tangent, foil.energy, [&](const element::ElementBatch& batch) {
+                                   for (Index e = 0; e < batch.count; ++e) {
+                                     add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
+                                     if (!with_tangent) continue;
+                                     const double* tangent = batch.tangent + e * size * size;
+                                     linear::scatter_add(foil.scatter, batch.first + e, tangent, foil.tangent);
+                                     add_moves(batch.first + e, Eigen::Map<const ElementMatrix>(tangent), -1.0);
+                                   }
+                                 });
     if (failed_[index]) return;
 
     geometry::PressureElement<E> p;
@@ -168,6 +204,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
       return x;
     };
     const auto subtract_load_stiffness = [&](Index e, double pressure) {
+      add_moves(e, Eigen::Map<const ElementMatrix>(p.derivative.data()), pressure);
       symmetrize<E>(p);
       p.derivative *= -pressure;
       linear::scatter_add(foil.scatter, e, p.derivative.data(), foil.tangent);
@@ -210,6 +247,8 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
   foil.residual.resize(unknowns);
   foil.pressure_gradient.resize(unknowns);
   foil.load_gradient.resize(unknowns);
+  foil.volume_rate = 0;
+  for (const Index k : moving_) foil.volume_rate += unit[k] * model_.move[k];
   const double rate = net_pressure_rate(foil.block);
   const double lambda = configuration.load_factor;
   for (Eigen::Index u = 0; u < unknowns; ++u) {
@@ -230,6 +269,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
     const Index air = air_of(static_cast<Index>(c));
     configuration.pressures[static_cast<Eigen::Index>(c)] = configuration.pressures[air];
   }
+  place_edges(configuration);
   load_factor_ = configuration.load_factor;
   base::parallel_chunks(threads_, foils_.size(),
                         [&](std::size_t i) { evaluate_foil(foils_[i], configuration, with_tangent); });
@@ -277,6 +317,16 @@ double System::chamber_volume(Index chamber) const {
   return below(c.outer) - below(c.inner) + c.dead_volume;
 }
 
+double System::chamber_volume_rate(Index chamber) const {
+  const Chamber& c = model_.chambers[static_cast<std::size_t>(chamber)];
+  double rate = 0;
+  for (const FoilEquations& foil : foils_) {
+    if (foil.block == c.outer) rate += foil.volume_rate;
+    if (foil.block == c.inner) rate -= foil.volume_rate;
+  }
+  return rate;
+}
+
 Index System::air_of(Index chamber) const {
   const Index other = model_.chambers[static_cast<std::size_t>(chamber)].connected_to;
   return other < 0 ? chamber : other;
@@ -285,11 +335,16 @@ Index System::air_of(Index chamber) const {
 chamber::GasLine System::gas_line(Index chamber, const Configuration& configuration) const {
   if (air_of(chamber) != chamber) return {};
   double volume = 0;
+  double rate = 0; // by the load factor as the edges move
   for (std::size_t c = 0; c < model_.chambers.size(); ++c) {
-    if (air_of(static_cast<Index>(c)) == chamber) volume += chamber_volume(static_cast<Index>(c));
+    if (air_of(static_cast<Index>(c)) != chamber) continue;
+    volume += chamber_volume(static_cast<Index>(c));
+    rate += chamber_volume_rate(static_cast<Index>(c));
   }
-  return chamber::gas_line(model_.chambers[static_cast<std::size_t>(chamber)].gas, configuration.pressures[chamber],
-                           volume, configuration.load_factor);
+  chamber::GasLine line = chamber::gas_line(model_.chambers[static_cast<std::size_t>(chamber)].gas,
+                                            configuration.pressures[chamber], volume, configuration.load_factor);
+  if (line.pressure_is_unknown) line.drive += rate;
+  return line;
 }
 
 MatX System::volume_gradients(Index foil) const {

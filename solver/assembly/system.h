@@ -24,12 +24,15 @@ struct FoilEquations {
   std::vector<Index> coordinate; // [unknown] -> 3 node + component
   linear::SymmetricPattern pattern;
   linear::Scatter scatter;
-  std::vector<double> tangent;   // values of the pattern, N/m: internal + pressure (symmetric part) + zones
-  VecX residual;                 // internal - external, free unknowns, N
-  VecX pressure_gradient;        // d volume / d unknown = force of a unit pressure, m2
-  VecX load_gradient;            // d external / d load factor at the pressures that are unknown, free unknowns, N
+  std::vector<double> tangent; // values of the pattern, N/m: internal + pressure (symmetric part) + zones
+  VecX residual;               // internal - external, free unknowns, N
+  VecX pressure_gradient;      // d volume / d unknown = force of a unit pressure, m2
+  // - d residual / d load factor at the positions and pressures that are unknown, N; where edges move it needs a
+  // tangent
+  VecX load_gradient;
   VecX internal, external;       // at every coordinate of the foil's nodes, [3 node + component], N (held ones too)
   double volume = 0;             // below the foil, m3
+  double volume_rate = 0;        // by the load factor as the edges move, m3
   double energy = 0;             // J
   double stiffness = 0;          // norm of the last tangent's diagonal, N/m
   double pressure = 0;           // net pressure on the whole foil along its normal, Pa
@@ -49,7 +52,8 @@ struct Balance {
 // Residual and tangent of a whole cushion, foil by foil side by side in threads.
 class System {
 public:
-  // Throws InputError where foils share free unknowns (their edges must be held).
+  // Throws InputError where foils share free unknowns (their edges must be held), or where what moves is not held or
+  // belongs to a base.
   System(Model model, int threads);
   System(System&&) = default; // the foils look into the model
   System(const System&) = delete;
@@ -59,14 +63,19 @@ public:
   const std::vector<FoilEquations>& foils() const { return foils_; }
   Index unknowns() const; // of all foils
 
-  // Sets the regulated pressures for the load factor and evaluates; with_tangent also fills tangents.
+  // Puts the coordinates that are held but move where the load factor has them.
+  void place_edges(Configuration& configuration) const;
+
+  // Sets the regulated pressures and the moved edges for the load factor and evaluates; with_tangent also fills
+  // tangents.
   Balance evaluate(Configuration& configuration, bool with_tangent);
 
   // The chamber whose air a chamber has: itself, or the one that it is connected to.
   Index air_of(Index chamber) const;
 
   // Of the last evaluation:
-  double chamber_volume(Index chamber) const; // m3, dead volume included; of this chamber alone
+  double chamber_volume(Index chamber) const;      // m3, dead volume included; of this chamber alone
+  double chamber_volume_rate(Index chamber) const; // its change by the load factor as the edges move, m3
   // Of the air of a chamber and those connected to it; a connected one has none of its own (no unknown pressure).
   chamber::GasLine gas_line(Index chamber, const Configuration& configuration) const;
   // d volume of chamber / d unknowns of a foil, one column an air (all zero for a connected chamber), m2
@@ -110,8 +119,9 @@ private:
   Model model_;
   int threads_;
   double time_step_ = 0;
-  double load_factor_ = 0; // of the last evaluation
-  Vec3 origin_;            // of volumes, near the cushion
+  double load_factor_ = 0;    // of the last evaluation
+  Vec3 origin_;               // of volumes, near the cushion
+  std::vector<Index> moving_; // held coordinates that move
   std::vector<FoilEquations> foils_;
   std::vector<Index> foil_of_block_; // -1: base
   std::vector<double> base_volume_;  // per block, of those without equations

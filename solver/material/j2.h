@@ -22,6 +22,8 @@ struct J2 {
   Elasticity elasticity;
   Flow flow;
 
+  bool is_rate_dependent() const noexcept { return flow.viscous(); }
+
   Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
                   Response& response) const noexcept {
     const Vec3 elastic = strain - stress_free_strain(old_history);

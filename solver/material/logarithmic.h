@@ -29,6 +29,8 @@ struct Logarithmic {
   Elasticity elasticity;
   Flow flow;
 
+  bool is_rate_dependent() const noexcept { return flow.viscous(); }
+
   Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
                   Response& response) const noexcept {
     const Stretch up{old_history[0], old_history[1], old_history[2]};

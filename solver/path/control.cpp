@@ -50,7 +50,13 @@ double value_of(const Held& held, const System& system, const Configuration& con
     }
     double operator()(const HeldArc& h) const {
       double sum = 0;
-      for (std::size_t i = 0; i < h.from.size(); ++i) sum += (at.positions[i] - h.from[i]).squaredNorm();
+      for (const assembly::FoilEquations& foil : system.foils()) {
+        for (const Index k : foil.coordinate) {
+          const auto node = static_cast<std::size_t>(k / 3);
+          const double change = at.positions[node][k % 3] - h.from[node][k % 3];
+          sum += change * change;
+        }
+      }
       return std::sqrt(sum / free_nodes(system));
     }
   };
@@ -80,6 +86,7 @@ Row row_of(const Held& held, double wanted, const System& system, const Configur
         if (foil.block == chamber.outer) form.u[i] += foil.pressure_gradient;
         if (foil.block == chamber.inner) form.u[i] -= foil.pressure_gradient;
       }
+      form.load_factor = system.chamber_volume_rate(h.chamber);
     }
     void operator()(const HeldDisplacement& h) {
       for (std::size_t i = 0; i < form.u.size(); ++i) {
@@ -90,6 +97,8 @@ Row row_of(const Held& held, double wanted, const System& system, const Configur
           }
         }
       }
+      const VecX& move = system.model().move;
+      for (const auto& [k, weight] : h.weights) form.load_factor += move.size() > 0 ? weight * move[k] : 0.0;
     }
     void operator()(const HeldArc& h) {
       const double factor = 1 / (free_nodes(system) * value);

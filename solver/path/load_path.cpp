@@ -57,6 +57,18 @@ bool is_folded(const System& system, Index foil, Index element, const Configurat
                       [](const element::PointState& p) { return p.surface == material::Surface::taut; });
 }
 
+// Where the free nodes go as the load factor grows by one, from the last evaluation, if edges move: with the edges
+// alone, the strip of elements beside them would take all their move.
+std::optional<Change> way_with_edges(const System& system, Newton& newton, const Configuration& at) {
+  if (system.model().move.size() == 0) return std::nullopt;
+  Tangent& tangent = newton.tangent();
+  if (!tangent.factorize(at, Tangent::Repair::indefinite) || tangent.artificial_tension() > 0) return std::nullopt;
+  const std::optional<Change> way = tangent.along(at);
+  constexpr double no_load = 1e-12;
+  if (!way || std::abs(way->load_factor) <= no_load) return std::nullopt;
+  return (1 / way->load_factor) * *way;
+}
+
 } // namespace
 
 bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
@@ -90,6 +102,10 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
   configuration.load_factor = result.load_factor = schedule.front().load_factor;
   const double part = 1.0 / options.parts;
   constexpr int easy_iterations = 8;
+  std::optional<Change> way;
+  if (system.model().move.size() > 0 && system.evaluate_accepted(configuration, true).possible) {
+    way = way_with_edges(system, newton, configuration);
+  }
   double length = part; // of a stretch
   int part_number = 1;  // the part being walked
   double walked = 0;    // of the stretch
@@ -111,8 +127,9 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     // no sliver of a step at the end of a part
     const bool to_goal = length > 0.999 * left;
     const double next = to_goal ? goal : walked + (length > 0.6 * left ? 0.5 * left : length);
-    Configuration trial = configuration;
-    trial.load_factor = std::lerp(begin.load_factor, end.load_factor, next);
+    const double load_factor = std::lerp(begin.load_factor, end.load_factor, next);
+    Configuration trial = way ? moved(system, configuration, (load_factor - result.load_factor) * *way) : configuration;
+    trial.load_factor = load_factor;
     system.set_time_step((next - walked) * (end.time - begin.time));
     Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
       if (report) report(result.steps + 1, i);
@@ -149,6 +166,7 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       }
       continue;
     }
+    way = way_with_edges(system, newton, trial); // before the history is accepted: what flows goes on flowing
     system.accept_history();
     configuration = std::move(trial);
     result.load_factor = configuration.load_factor;

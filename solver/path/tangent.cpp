@@ -67,6 +67,7 @@ Configuration moved(const System& system, const Configuration& from, const Chang
   }
   to.pressures += change.p;
   to.load_factor += change.load_factor;
+  system.place_edges(to);
   return to;
 }
 

@@ -138,6 +138,10 @@ private:
       return path::follow_control(system_, newton_, c, *control, options, accepted, report);
     }
     path::LoadPathOptions options;
+    if (!drive_.control.schedule.empty()) options.schedule = {{0, 0}};
+    for (const pipeline::workflow::Moment& moment : drive_.control.schedule) {
+      options.schedule.push_back({moment.time, moment.factor});
+    }
     options.parts = parts;
     options.objection = objection;
     if (given.max_steps) options.max_steps = *given.max_steps;
@@ -188,6 +192,7 @@ private:
 
   void write_history(const path::Step& step, const assembly::Configuration& c, const std::vector<FoilResults>& foils) {
     History::Row row{{"step", step.number}, {"load_factor", step.load_factor}, {"iterations", step.iterations}};
+    if (!drive_.control.schedule.empty()) row.emplace_back("time", step.time);
     for (std::size_t i = 0; i < drive_.state.chambers.size(); ++i) {
       const std::string chamber = "chambers." + drive_.state.chambers[i].name + ".";
       row.emplace_back(chamber + "gauge_pressure", c.pressures[static_cast<Eigen::Index>(i)]);
@@ -198,6 +203,7 @@ private:
       row.emplace_back(foil + "sag", r.sag);
       row.emplace_back(foil + "max_deflection", r.max_deflection);
       row.emplace_back(foil + "von_mises.max", r.von_mises.max);
+      if (r.plastic) row.emplace_back(foil + "plastic_strain.max", r.plastic_strain.max);
     }
     history_.add(row);
   }
@@ -409,6 +415,16 @@ solver::material::Law law_of(const pipeline::workflow::Material& material) {
   return with_tension_field(law::StVenantKirchhoff{elastic.E, elastic.nu});
 }
 
+// A history belongs to the law that wrote it.
+void check_history(const pipeline::state::Foil& foil, const solver::material::Law& law, const std::string& name) {
+  const std::span<const std::string_view> names = solver::material::history_names(law);
+  if (foil.history.empty() || std::ranges::equal(foil.history_names, names)) return;
+  throw base::StateError(fmt::format(
+      "foil `{}` carries the history of another law ({}); this one has {}: run the stages before with the same "
+      "material",
+      name, fmt::join(foil.history_names, ", "), names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
 assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to) {
   const Workflow& workflow = start.workflow;
   assembly::Model model;
@@ -424,9 +440,11 @@ assembly::Model make_model(const Start& start, const State& state, double weight
     const pipeline::state::Foil& foil = state.foils[b];
     const Vec3 warp(std::cos(foil.warp_angle), std::sin(foil.warp_angle), 0);
     const pipeline::workflow::Material& material = workflow.materials.at(workflow.cushion.foils[b].material);
+    const solver::material::Law law = law_of(material);
+    check_history(foil, law, state.mesh.blocks[b].name);
     model.foils.push_back(assembly::Foil{solver::element::make_reference(state.mesh.element, state.stress_rule,
                                                                          foil.reference, warp, foil.predeformation),
-                                         law_of(material), foil.thickness});
+                                         law, foil.thickness, foil.history});
     if (workflow.site.gravity && material.density) {
       const solver::element::Membrane membrane{state.mesh.blocks[b].connectivity, model.foils.back()->reference,
                                                model.foils.back()->law, foil.thickness};
@@ -451,17 +469,26 @@ int run_equilibrium(const Start& start, Drive drive) {
   drive.modelled.insert(drive.modelled.begin(), {"large deformation of membranes without bending stiffness",
                                                  "pressure that follows the foils, with its load stiffness"});
   drive.modelled.push_back(workflow.site.gravity ? "weight of the foils" : "no weight of the foils (gravity: off)");
-  if (std::any_of(drive.model.foils.begin(), drive.model.foils.end(),
-                  [](const auto& foil) { return foil && !solver::material::has_tension_field(foil->law); })) {
+  const auto any_foil = [&](const auto& is_such) {
+    return std::ranges::any_of(drive.model.foils, [&](const auto& foil) { return foil && is_such(foil->law); });
+  };
+  if (any_foil([](const auto& law) { return !solver::material::has_tension_field(law); })) {
     drive.not_modelled.emplace_back("wrinkling (no tension field): compressed areas carry compression");
   }
-  if (std::any_of(drive.model.foils.begin(), drive.model.foils.end(),
-                  [](const auto& foil) { return foil && solver::material::has_tension_field(foil->law); })) {
+  if (any_foil([](const auto& law) { return solver::material::has_tension_field(law); })) {
     drive.modelled.emplace_back("wrinkling by a tension field: foils carry no compression");
   }
+  const bool plastic = any_foil([](const auto& law) { return solver::material::history_components(law) > 0; });
+  const bool flows = any_foil([](const auto& law) { return solver::material::is_rate_dependent(law); });
+  if (plastic) drive.modelled.emplace_back("yield of the foils whose law has it, with its history");
+  if (flows && !drive.control.schedule.empty())
+    drive.modelled.emplace_back("flow with time of the foils whose law has it");
+  if (flows && drive.control.schedule.empty()) {
+    drive.not_modelled.emplace_back("flow with time: without `duration` or `history` no time passes");
+  }
   drive.not_modelled.insert(drive.not_modelled.end(),
-                            {"yield, creep and tear of the foil: the law is elastic", "contact forces between foils",
-                             "dynamics", "flexibility of the frame"});
+                            {plastic ? "tear of the foil" : "yield, creep and tear of the foil: the law is elastic",
+                             "contact forces between foils", "dynamics", "flexibility of the frame"});
   solver::linear::use_one_blas_thread();
   Run(start, std::move(drive)).run();
   return 0;

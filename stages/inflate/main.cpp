@@ -26,8 +26,8 @@ std::vector<double> predeformation(const common::Start& start, std::size_t foil,
     if (n != last_force) { // the same everywhere in an isotropic film
       const auto found = solver::material::predeformation(law, settings.thickness, n);
       if (!found) {
-        throw base::InputError(fmt::format("{}: foil `{}` cannot carry a prestress of {} N/m: lower it, or take a "
-                                           "thicker or stiffer foil",
+        throw base::InputError(fmt::format("{}: foil `{}` cannot carry a prestress of {} N/m (without yielding): lower "
+                                           "it, or take a thicker, stiffer or stronger foil",
                                            to_string(settings.mark), settings.name, common::number(n.maxCoeff())));
       }
       last_force = n;

@@ -78,6 +78,38 @@ TEST(Paths, PatchTestGivesUniformStressInReducedQ9) {
   expect_patch(ElementType::Q9, StressRule::reduced);
 }
 
+// A flat sheet whose whole rim moves with the load factor by a linear map.
+assembly::Model pulled_sheet(ElementType element, const Eigen::Matrix3d& map) {
+  Cushion c;
+  c.element = element;
+  c.divisions = {8, 6};
+  c.heights = {0};
+  assembly::Model model = model_of(c, 0);
+  model.move = VecX::Zero(static_cast<Eigen::Index>(3 * model.mesh.nodes.size()));
+  for (std::size_t i = 0; i < model.mesh.nodes.size(); ++i) {
+    if (model.fixed[3 * i] != 0) {
+      model.move.segment<3>(static_cast<Eigen::Index>(3 * i)) = map * model.mesh.nodes[i] - model.mesh.nodes[i];
+    }
+    model.fixed[3 * i + 2] = 1; // in the plane
+  }
+  return model;
+}
+
+TEST_P(EveryElement, MovedRimIsPredictedThroughTheWholeSheet) {
+  // One step of half the sheet's length: by the rim alone the elements beside it would be stretched sixfold and those
+  // of the other side turned over. A linear map is what the predictor finds, and then there is nothing left to iterate.
+  Eigen::Matrix3d map;
+  map << 1.5, 0.1, 0, -0.05, 0.9, 0, 0, 0, 1;
+  const assembly::Model model = pulled_sheet(GetParam(), map);
+  Solved s(model);
+  ASSERT_TRUE(s.converged()) << s.path.reason;
+  EXPECT_EQ(s.path.steps, 1);
+  EXPECT_EQ(s.iterations(), 0);
+  for (std::size_t i = 0; i < s.at.positions.size(); ++i) {
+    EXPECT_LT((s.at.positions[i] - map * model.mesh.nodes[i]).norm(), 1e-12);
+  }
+}
+
 // residuals of one solution at load factor 1, starting from another
 std::vector<double> residuals(const assembly::Model& model, const Solved& from) {
   assembly::System system(model, 1);

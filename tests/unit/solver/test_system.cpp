@@ -255,6 +255,21 @@ TEST_P(SystemOfEveryElement, SupportForcesAndAllLoadsSumToZeroAndWeightIsDensity
   EXPECT_LT(sum.norm(), 1e-7 * 400 * 2); // 1e-7 of pressure x plan area; the residual's tolerance is 1e-9 in norm
 }
 
+TEST(System, RefusesToMoveWhatIsFreeOrABase) {
+  Cushion cushion = small(ElementType::Q4);
+  cushion.heights = {0.12};
+  cushion.base = true;
+  assembly::Model model = model_of(cushion, 0);
+  const Index base = model.mesh.blocks[1].connectivity[0];
+  Index free = 0;
+  while (model.fixed[static_cast<std::size_t>(free)] != 0) ++free;
+  for (const Index k : {free, 3 * base}) {
+    model.move = VecX::Zero(static_cast<Eigen::Index>(3 * model.mesh.nodes.size()));
+    model.move[k] = 0.1;
+    EXPECT_THROW(assembly::System(model, 1), base::InputError) << k;
+  }
+}
+
 TEST(System, RefusesFoilsThatShareAFreeNode) {
   assembly::Model model = model_of(small(ElementType::Q4), 0);
   model.fixed[3 * static_cast<std::size_t>(model.mesh.edges[0].nodes[1])] = 0;

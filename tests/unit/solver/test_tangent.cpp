@@ -270,6 +270,61 @@ TEST(Tangent, LoadFactorDrivesWhatTheResidualsShow) {
   EXPECT_LT(relative_difference(-slope.tail(2), -f.tail(2)), 1e-6) << slope.tail(2) << " | " << f.tail(2);
 }
 
+// Rims move in every direction, each coordinate its own way.
+assembly::Model with_moving_rims(assembly::Model model) {
+  model.move = VecX::Zero(static_cast<Eigen::Index>(3 * model.mesh.nodes.size()));
+  for (const geometry::Edge& edge : model.mesh.edges) {
+    for (const Index node : edge.nodes) {
+      for (Index c = 0; c < 3; ++c) model.move[3 * node + c] = 0.03 * std::sin(1.7 * node + 2.3 * c);
+    }
+  }
+  return model;
+}
+
+TEST(Tangent, MovedRimsDriveWhatTheResidualsShow) {
+  assembly::Model model = with_moving_rims(three_foils(900));
+  model.chambers[0].gas = chamber::Regulated{2e5, 7e5}; // large enough to stand out beside E h
+  model.chambers[1].gas = chamber::PrescribedVolume{0.1, 0.2};
+  Dense d(model);
+  const VecX f = d.f;
+  const auto residuals = [&](double load_factor) {
+    d.at.load_factor = load_factor;
+    d.fill();
+    return VecX(d.b);
+  };
+  constexpr double step = 1e-4;
+  const VecX slope = (residuals(0.4 + step) - residuals(0.4 - step)) / (2 * step);
+  EXPECT_LT(relative_difference(slope.head(d.free), f.head(d.free)), 1e-7);
+  EXPECT_LT(relative_difference(-slope.tail(2), -f.tail(2)), 1e-6) << slope.tail(2) << " | " << f.tail(2);
+}
+
+TEST(Tangent, MovedRimsEnterTheRowsOfWhatIsHeld) {
+  Dense d(with_moving_rims(three_foils(900)));
+  const Index rim = d.system.model().mesh.edges[0].nodes[1];
+  const Index free = d.system.foils()[1].coordinate[4];
+  std::vector<Vec3> from = d.at.positions;
+  tests::shake(d.system.model(), from, 0.01);
+  path::HeldDisplacement displacement = path::displacement_of(rim, Vec3(0.6, 0, 0.8));
+  displacement.weights.emplace_back(free, 2.0);
+  for (const path::Held& held :
+       {path::Held(path::HeldVolume{1}), path::Held(displacement), path::Held(path::HeldArc{from})}) {
+    const path::Row row = path::row_of(held, 0, d.system, d.at);
+    path::Change way = row.form; // any direction
+    for (std::size_t i = 0; i < way.u.size(); ++i)
+      way.u[i] = VecX::Constant(way.u[i].size(), 0.01 + 0.02 * static_cast<double>(i));
+    way.load_factor = 1;
+    const auto value = [&](double step) {
+      assembly::Configuration there = path::moved(d.system, d.at, step * way);
+      d.system.evaluate(there, false);
+      return path::value_of(held, d.system, there);
+    };
+    constexpr double step = 1e-4;
+    const double slope = (value(step) - value(-step)) / (2 * step);
+    EXPECT_NEAR(slope, path::dot(row.form, way), 1e-6 * std::abs(slope)) << held.index();
+    d.fill();
+  }
+}
+
 TEST(Tangent, ConnectedChambersShareOnePressureAndTheSumOfTheirVolumes) {
   assembly::Model model = three_foils(900);
   model.chambers[1].connected_to = 0;

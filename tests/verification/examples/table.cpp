@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/verification/examples/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace pneuma::tests {
+
+namespace {
+
+std::vector<Row>& rows() {
+  static std::vector<Row> all;
+  return all;
+}
+
+std::string quoted(const std::string& text) {
+  return '"' + text + '"';
+}
+
+void write_csv(const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "example,quantity,thesis,reference,reference value,ours,error,tolerance,reason of the tolerance,mesh,"
+          "iterations,remark\n";
+  for (const Row& r : rows()) {
+    file << fmt::format("{},{},{},{},{:.8g},{:.8g},{:.2e},{:.1e},{},{},{},{}\n", r.example, quoted(r.quantity),
+                        quoted(r.thesis), quoted(r.reference_name), r.reference, r.ours, r.error(), r.tolerance,
+                        quoted(r.why), quoted(r.mesh), r.iterations, quoted(r.remark));
+  }
+}
+
+void write_markdown(const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "| | quantity | thesis | reference | | ours | error | tolerance | mesh | iterations | remark |\n"
+          "|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Row& r : rows()) {
+    file << fmt::format("| {} | {} | {} | {} | {:.6g} | {:.6g} | {:.1e} | {:.0e}: {} | {} | {} | {} |\n", r.example,
+                        r.quantity, r.thesis, r.reference_name, r.reference, r.ours, r.error(), r.tolerance, r.why,
+                        r.mesh, r.iterations, r.remark);
+  }
+}
+
+class Table : public testing::Environment {
+public:
+  void TearDown() override {
+    const char* wanted = std::getenv("PNEUMA_TABLES");
+    if (wanted == nullptr || rows().empty()) return;
+    // B2 before B10, whichever order the files of the program were linked in
+    const auto number = [](const Row& r) { return std::stoi(r.example.substr(1)); };
+    std::stable_sort(rows().begin(), rows().end(), [&](const Row& a, const Row& b) { return number(a) < number(b); });
+    const std::filesystem::path folder = wanted;
+    std::filesystem::create_directories(folder);
+    write_csv(folder / "material_examples.csv");
+    write_markdown(folder / "material_examples.md");
+  }
+};
+
+const testing::Environment* const table = testing::AddGlobalTestEnvironment(new Table);
+
+} // namespace
+
+double Row::error() const {
+  return std::abs(reference == 0 ? ours : ours / reference - 1);
+}
+
+void expect(const Row& row) {
+  EXPECT_LE(row.error(), row.tolerance) << row.example << ", " << row.quantity << ": " << row.ours << " instead of "
+                                        << row.reference << " (" << row.reference_name << ")";
+  std::printf("%-4s %-50s thesis %-14s %s %.8g, ours %.8g, error %.2e (allowed %.1e), %d iterations\n",
+              row.example.c_str(), row.quantity.c_str(), row.thesis.c_str(), row.reference_name.c_str(), row.reference,
+              row.ours, row.error(), row.tolerance, row.iterations);
+  rows().push_back(row);
+}
+
+} // namespace pneuma::tests
