@@ -31,8 +31,8 @@ void check(const NurbsOptions& options) {
                     nurbs::max_degree - 1, options.degree));
   }
   for (const int n : options.net) {
-    if (n <= options.degree || n > 400) {
-      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 400 control points a side, not {}",
+    if (n <= options.degree || n > 200) {
+      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 200 control points a side, not {}",
                                               options.degree, options.degree + 1, n));
     }
   }

@@ -27,7 +27,7 @@ struct ShearPoint {
 };
 
 struct NurbsOptions {
-  std::array<int, 2> net = {25, 25}; // control points of the stress surfaces; PD-NURBS: the same number twice
+  std::array<int, 2> net = {25, 25}; // control points of the stress surfaces, up to 200; PD-NURBS: the same twice
   int degree = 3;                    // of the stress surfaces, 2 to 6; a potential has one degree and one row more
   // Strains of the table, min <= 0 < max. Default: from the points, with a twentieth of the largest strain at least on
   // the side of compression; a law to fit needs it.

@@ -294,7 +294,7 @@ TEST(PdNurbsFit, RefusesOptionsWithoutSense) {
     return message_of([&] { fit_pd_nurbs(Law(neo_hooke), options); });
   };
   EXPECT_THAT(with([](NurbsOptions& o) { o.net = {12, 13}; }), testing::HasSubstr("12 x 13"));
-  EXPECT_THAT(with([](NurbsOptions& o) { o.net = {3, 3}; }), testing::HasSubstr("4 to 400"));
+  EXPECT_THAT(with([](NurbsOptions& o) { o.net = {3, 3}; }), testing::HasSubstr("4 to 200"));
   EXPECT_THAT(with([](NurbsOptions& o) { o.degree = 1; }), testing::HasSubstr("degree"));
   EXPECT_THAT(with([](NurbsOptions& o) { o.range = StrainRange{-0.5, 1}; }), testing::HasSubstr("range"));
   EXPECT_THAT(with([](NurbsOptions& o) { o.range = StrainRange{0.1, 1}; }), testing::HasSubstr("range"));
