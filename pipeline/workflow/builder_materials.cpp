@@ -51,12 +51,20 @@ std::vector<std::string> files_of(const Value& data) {
 
 } // namespace
 
-Workflow Builder::build_materials() {
+MaterialsResult Builder::build_materials(const std::vector<std::string>& names) {
   read_materials_file(workflow_.file, {workflow_.file.generic_string(), 1, 1});
   check_fits();
-  for (const std::string& name : material_names_) read_points(name);
-  make_origins_relative();
-  return std::move(workflow_);
+  MaterialsResult result;
+  result.names = material_names_;
+  const std::vector<std::string>& asked = names.empty() ? material_names_ : names;
+  for (const std::string& name : with_fits(asked)) read_points(name);
+  for (const std::string& name : material_names_) {
+    const auto found = workflow_.materials.find(name);
+    const bool is_asked = std::find(asked.begin(), asked.end(), name) != asked.end();
+    if (is_asked && found != workflow_.materials.end()) result.materials.push_back(found->second);
+  }
+  result.known = std::move(workflow_.materials);
+  return result;
 }
 
 void Builder::read_materials(const Value& root) {
@@ -364,7 +372,9 @@ std::optional<Strength> Builder::strength_of(const Value& material) {
 
 void Builder::finish_materials() {
   check_fits();
-  const std::set<std::string> used = used_materials();
+  std::vector<std::string> of_foils;
+  for (const FoilSettings& foil : workflow_.cushion.foils) of_foils.push_back(foil.material);
+  const std::set<std::string> used = with_fits(of_foils);
   for (const std::string& name : used) {
     read_points(name);
     if (const auto found = workflow_.materials.find(name); found != workflow_.materials.end()) {
@@ -419,16 +429,16 @@ void Builder::check_fits() {
   }
 }
 
-std::set<std::string> Builder::used_materials() const {
-  std::set<std::string> used;
-  for (const FoilSettings& foil : workflow_.cushion.foils) {
-    for (std::string name = foil.material; !name.empty() && used.insert(name).second;) {
+std::set<std::string> Builder::with_fits(const std::vector<std::string>& names) const {
+  std::set<std::string> all;
+  for (const std::string& first : names) {
+    for (std::string name = first; !name.empty() && all.insert(name).second;) {
       const auto found = workflow_.materials.find(name);
       const auto* table = found != workflow_.materials.end() ? std::get_if<TableLaw>(&found->second.law) : nullptr;
       name = table != nullptr ? table->fit_to : "";
     }
   }
-  return used;
+  return all;
 }
 
 void Builder::read_points(const std::string& name) {

@@ -344,8 +344,17 @@ struct ReadResult {
 // Reads and checks a workflow file. Never throws for what the user wrote; every problem is in the result.
 ReadResult read_workflow(const std::filesystem::path& file);
 
-// Reads and checks a file of materials by itself: `workflow.materials` holds all of them, the rest is empty.
-ReadResult read_materials(const std::filesystem::path& file);
+// A file of materials on its own.
+struct MaterialsResult {
+  std::vector<Material> materials;       // those asked for, in the order of the file
+  std::vector<std::string> names;        // of all in the file
+  std::map<std::string, Material> known; // all without fault: what tables are fitted to is among them
+  std::vector<Problem> problems;
+};
+
+// Reads the materials of these names (none: all) from a file of materials, the test points of their tables too. A name
+// that is not in the file is not found, and no problem. Never throws for what the user wrote.
+MaterialsResult read_materials(const std::filesystem::path& file, const std::vector<std::string>& names);
 
 // Reads the stage.yaml that the runner wrote (or a user edited); marks of values point to the user's own file where
 // stage.yaml says where they came from. Throws InputError with all problems, a line each.
