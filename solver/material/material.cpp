@@ -53,6 +53,34 @@ double thickness_stretch(const Law& law, const Vec3& strain, const double* histo
   return std::visit([&]<Material M>(const M& m) { return m.thickness_stretch(strain, history); }, law);
 }
 
+bool outside_data(const Law& law, const Vec3& strain, const double* history) {
+  return std::visit(
+      [&]<Material M>(const M& m) {
+        if constexpr (requires { m.outside(strain); }) {
+          return m.outside(strain);
+        } else if constexpr (requires { m.law.outside(strain); }) {
+          return m.law.outside(m.relaxed(strain, history).strain);
+        } else {
+          return false;
+        }
+      },
+      law);
+}
+
+std::optional<StrainRange> data_range(const Law& law) {
+  return std::visit(
+      []<Material M>(const M& m) -> std::optional<StrainRange> {
+        if constexpr (requires { m.table->domain; }) {
+          return m.table->domain.range;
+        } else if constexpr (requires { m.law.table->domain; }) {
+          return m.law.table->domain.range;
+        } else {
+          return std::nullopt;
+        }
+      },
+      law);
+}
+
 int evaluate(const Law& law, Batch& batch) {
   return std::visit(
       [&batch]<Material M>(const M& m) {

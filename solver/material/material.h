@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <variant>
 
 #include "solver/material/j2.h"
+#include "solver/material/le_nurbs.h"
 #include "solver/material/logarithmic.h"
 #include "solver/material/mooney_rivlin.h"
+#include "solver/material/pd_nurbs.h"
 #include "solver/material/st_venant_kirchhoff.h"
 #include "solver/material/tension_field.h"
 
@@ -15,9 +18,11 @@ namespace pneuma::solver::material {
 
 static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField<MooneyRivlin>>);
 static_assert(Material<TensionField<J2>> && Material<TensionField<Logarithmic>>);
+static_assert(Material<TensionField<PdNurbs>> && Material<TensionField<LeNurbs>>);
 
-using Law = std::variant<StVenantKirchhoff, MooneyRivlin, J2, Logarithmic, TensionField<StVenantKirchhoff>,
-                         TensionField<MooneyRivlin>, TensionField<J2>, TensionField<Logarithmic>>;
+using Law = std::variant<StVenantKirchhoff, MooneyRivlin, J2, Logarithmic, PdNurbs, LeNurbs,
+                         TensionField<StVenantKirchhoff>, TensionField<MooneyRivlin>, TensionField<J2>,
+                         TensionField<Logarithmic>, TensionField<PdNurbs>, TensionField<LeNurbs>>;
 
 std::span<const std::string_view> history_names(const Law& law);
 int history_components(const Law& law); // doubles a point
@@ -34,6 +39,11 @@ double thickness_stretch(const Law& law, const Vec3& strain, const double* histo
 
 // Green-Lagrange strain at which a history leaves no stress.
 Vec3 stress_free_strain(const Law& law, const double* history);
+
+// Whether the law is a table that has no data where its material is strained so (and answers, if at all, by going on
+// linearly), and the strains, principal or along its axes, that it has data between.
+bool outside_data(const Law& law, const Vec3& strain, const double* history);
+std::optional<StrainRange> data_range(const Law& law);
 
 // Points of several elements that meet their material in one call: one instantiation per law, none per element type.
 struct Batch {

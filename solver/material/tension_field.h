@@ -184,6 +184,7 @@ private:
       turn(p, plain, angle, best);
       ask_law(p, best); // the history of the best, not of the last
     }
+    if (best.status != Status::ok) best.status = plain.status; // however flat: what is missing is missing without
     best.surface = Surface::wrinkled;
     return best;
   }

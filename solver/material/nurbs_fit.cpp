@@ -1,0 +1,591 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/material/nurbs_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "geometry/nurbs/fit.h"
+
+namespace pneuma::solver::material {
+
+namespace nurbs = geometry::nurbs;
+using base::Vec2;
+
+namespace {
+
+double logarithmic(double strain) {
+  return 0.5 * std::log1p(2 * strain);
+}
+
+void check(const NurbsOptions& options) {
+  if (options.degree < 2 || options.degree > nurbs::max_degree - 1) {
+    throw std::invalid_argument(
+        fmt::format("the degree of a table must be 2 to {}, not {}: of degree 1 the tangent jumps",
+                    nurbs::max_degree - 1, options.degree));
+  }
+  for (const int n : options.net) {
+    if (n <= options.degree || n > 400) {
+      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 400 control points a side, not {}",
+                                              options.degree, options.degree + 1, n));
+    }
+  }
+  if (options.knee && !(*options.knee > 0)) {
+    throw std::invalid_argument(fmt::format("knee must be a positive strain, not {}", *options.knee));
+  }
+  if (options.range && !(options.range->min > -0.5 && options.range->min <= 0 && options.range->max > 0)) {
+    throw std::invalid_argument(
+        fmt::format("the range of strains must begin between -0.5 and 0 and end above 0, not at {} "
+                    "and {}",
+                    options.range->min, options.range->max));
+  }
+}
+
+void check(const StressPoint& point, std::size_t number, const std::optional<StrainRange>& range) {
+  if (!std::isfinite(point.e1) || !std::isfinite(point.e2) || !(std::min(point.e1, point.e2) > -0.5)) {
+    throw std::invalid_argument(
+        fmt::format("point {}: strains {} and {} must be above -0.5", number + 1, point.e1, point.e2));
+  }
+  if (std::isinf(point.s1) || std::isinf(point.s2) || !(point.weight >= 0)) {
+    throw std::invalid_argument(
+        fmt::format("point {}: stresses {}, {} and weight {}", number + 1, point.s1, point.s2, point.weight));
+  }
+  if (range && (std::min(point.e1, point.e2) < range->min || std::max(point.e1, point.e2) > range->max)) {
+    throw std::invalid_argument(fmt::format("point {}: strains {} and {} lie outside the range {} to {}", number + 1,
+                                            point.e1, point.e2, range->min, range->max));
+  }
+}
+
+StrainRange range_of(std::span<const StressPoint> points, const std::optional<StrainRange>& wanted) {
+  if (wanted) return *wanted;
+  StrainRange range;
+  for (const StressPoint& point : points) {
+    range.min = std::min({range.min, point.e1, point.e2});
+    range.max = std::max({range.max, point.e1, point.e2});
+  }
+  if (!(range.max > 0)) throw std::invalid_argument("a table needs points with a positive strain");
+  range.min = std::min(range.min, -range.max / 20);
+  return range;
+}
+
+// Corners of the convex hull, counterclockwise (Andrew 1979, Inf. Process. Lett. 9).
+std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(),
+            [](const Vec2& a, const Vec2& b) { return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]); });
+  const auto turns_left = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0;
+  };
+  std::vector<Vec2> hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t begin = hull.size();
+    for (const Vec2& point : points) {
+      while (hull.size() >= begin + 2 && !turns_left(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
+      hull.push_back(point);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
+  }
+  return hull;
+}
+
+TableDomain domain_of(std::span<const StressPoint> points, StrainRange range, bool symmetric) {
+  std::vector<Vec2> places;
+  const double near = std::min(-range.min, range.max / 20);
+  for (const double x : {-near, near}) {
+    for (const double y : {-near, near}) places.emplace_back(x, y);
+  }
+  for (const StressPoint& point : points) {
+    if (point.weight == 0) continue;
+    places.emplace_back(point.e1, point.e2);
+    if (symmetric) places.emplace_back(point.e2, point.e1);
+  }
+  const std::vector<Vec2> hull = convex_hull(std::move(places));
+  TableDomain domain{range, {}};
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2& from = hull[i];
+    const Vec2 along = (hull[(i + 1) % hull.size()] - from).normalized();
+    const TableBorder border{along[1], -along[0], along[1] * from[0] - along[0] * from[1]};
+    // not those along the range's own
+    if (std::max(std::abs(border.a), std::abs(border.b)) < 1 - 1e-12 ||
+        border.c < (border.a + border.b > 0 ? range.max : -range.min) - 1e-12) {
+      domain.borders.push_back(border);
+    }
+  }
+  return domain;
+}
+
+// Strains at which a law is asked: borders of spans and two places between.
+std::vector<double> places_in(const std::vector<double>& breaks) {
+  std::vector<double> places;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    for (const double part : {0.0, 1.0 / 3, 2.0 / 3}) places.push_back(breaks[i] + part * (breaks[i + 1] - breaks[i]));
+  }
+  places.push_back(breaks.back());
+  return places;
+}
+
+// What a law's material answers, without its tension field, in one step from the unloaded state.
+bool ask(const Law& law, const Vec3& strain, double time, Response& response) {
+  std::vector<double> history(static_cast<std::size_t>(2 * history_components(law)), 0.0);
+  const double* old_history = history.data();
+  double* new_history = history.data() + history_components(law);
+  const Status status = std::visit(
+      [&]<Material M>(const M& m) {
+        if constexpr (requires { m.relaxed(strain, old_history); }) {
+          return m.law.evaluate(strain, old_history, new_history, time, response);
+        } else {
+          return m.evaluate(strain, old_history, new_history, time, response);
+        }
+      },
+      law);
+  return status == Status::ok && response.stress.allFinite();
+}
+
+// Half of the sizes lie below.
+double median(std::vector<double> sizes) {
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+  return sizes[sizes.size() / 2];
+}
+
+// Weight of a stress of this size: errors of stresses beyond the usual count relative to them.
+double weight_of(double size, double usual) {
+  return usual > 0 ? std::pow(usual / (usual + size), 2) : 1;
+}
+
+// An isotropic law answers turned strain with turned stress.
+void check_isotropic(const Law& law, StrainRange range, double time) {
+  const double e1 = 0.7 * range.max;
+  const double e2 = 0.2 * range.max;
+  Response straight;
+  Response turned;
+  if (!ask(law, Vec3(e1, e2, 0), time, straight)) return;
+  for (const double angle : {std::acos(0.0), 0.4}) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const Vec3 strain(c * c * e1 + s * s * e2, s * s * e1 + c * c * e2, 2 * c * s * (e1 - e2));
+    if (!ask(law, strain, time, turned)) continue;
+    const double s1 = straight.stress[0];
+    const double s2 = straight.stress[1];
+    const Vec3 expected(c * c * s1 + s * s * s2, s * s * s1 + c * c * s2, c * s * (s1 - s2));
+    constexpr double local_iterations = 1e-7; // what plastic laws may leave
+    if ((turned.stress - expected).cwiseAbs().maxCoeff() > local_iterations * straight.stress.cwiseAbs().maxCoeff()) {
+      throw std::invalid_argument("the law to fit depends on the direction, pd_nurbs does not: use le_nurbs");
+    }
+  }
+}
+
+// The knee with which linear interpolation between the breaks follows a law best, along lines through its range; the
+// errors of stresses beyond the median count relative to them.
+std::optional<double> best_knee(const Law& law, StrainRange range, int spans, double time) {
+  const double largest = std::max(-logarithmic(range.min), logarithmic(range.max));
+  const std::vector<double> lines = strain_breaks(range, 8, largest / 10);
+  const std::vector<StressPoint> points = sample(law, lines, lines, time);
+  std::vector<double> sizes;
+  for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
+  const double usual = median(std::move(sizes));
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double part : {0.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
+    const std::optional<double> knee = part > 0 ? std::optional(part * largest) : std::nullopt;
+    const std::vector<double> ends = strain_breaks(range, spans, knee);
+    double error = 0;
+    Response left;
+    Response middle;
+    Response right;
+    for (const double line : lines) {
+      bool known = ask(law, Vec3(ends[0], line, 0), time, left);
+      for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const bool next = ask(law, Vec3(ends[i + 1], line, 0), time, right);
+        if (known && next && ask(law, Vec3(0.5 * (ends[i] + ends[i + 1]), line, 0), time, middle)) {
+          const Vec3 miss = middle.stress - 0.5 * (left.stress + right.stress);
+          error = std::max(error, weight_of(middle.stress.head<2>().norm(), usual) * miss.head<2>().squaredNorm());
+        }
+        known = next;
+        left = right;
+      }
+    }
+    if (error < 0.98 * least) {
+      least = error;
+      best = knee;
+    }
+  }
+  return best;
+}
+
+// Stresses of a table along (first) and across (second) a direction, with derivatives.
+struct TableStress {
+  double first, second;
+  double d11, d12, d21, d22;
+};
+
+// Monotony and integrability, looked for at the places of a law's samples.
+template <class F>
+void judge(const F& stress, const TableDomain& domain, const std::vector<double>& in_first,
+           const std::vector<double>& in_second, FitReport& report) {
+  double least = std::numeric_limits<double>::infinity();
+  double stiffest = 0;
+  double defect = 0;
+  for (const double e1 : places_in(in_first)) {
+    for (const double e2 : places_in(in_second)) {
+      if (!domain.holds(e1, e2)) continue;
+      const TableStress at = stress(e1, e2);
+      const double slope = std::min(2 * at.first + (1 + 2 * e1) * at.d11, 2 * at.second + (1 + 2 * e2) * at.d22);
+      if (slope < least) {
+        least = slope;
+        report.not_monotone = Vec2(e1, e2);
+      }
+      stiffest = std::max({stiffest, std::abs(at.d11), std::abs(at.d12), std::abs(at.d21), std::abs(at.d22)});
+      defect = std::max(defect, std::abs(at.d12 - at.d21));
+    }
+  }
+  report.monotone = least >= 0;
+  report.integrability_defect = stiffest > 0 ? defect / stiffest : 0;
+}
+
+// Observations of stresses as derivatives of a potential, or as values of the first or second stress.
+struct Observations {
+  std::vector<nurbs::SurfaceObservation> list;
+  std::vector<Vec2> strains; // of each
+  std::size_t reported = 0;  // the first of them, not those that fill
+};
+
+// The first `reported` points are those whose residuals are reported.
+Observations gradients(std::span<const StressPoint> points, std::size_t reported) {
+  Observations result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const StressPoint& p = points[i];
+    if (!std::isnan(p.s1)) {
+      result.list.push_back({p.e1, p.e2, 1, 0, p.s1, p.weight});
+      result.strains.emplace_back(p.e1, p.e2);
+    }
+    if (!std::isnan(p.s2)) {
+      result.list.push_back({p.e1, p.e2, 0, 1, p.s2, p.weight});
+      result.strains.emplace_back(p.e1, p.e2);
+    }
+    if (i < reported) result.reported = result.list.size();
+  }
+  if (result.list.empty()) throw std::invalid_argument("a table needs points with stresses");
+  return result;
+}
+
+double sum_of_weights(const std::vector<nurbs::SurfaceObservation>& observations) {
+  double sum = 0;
+  for (const nurbs::SurfaceObservation& o : observations) sum += o.weight;
+  return sum;
+}
+
+void report_residuals(const nurbs::Residuals& residuals, const Observations& observations, FitReport& report) {
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t i = 0; i < observations.reported; ++i) {
+    const nurbs::SurfaceObservation& o = observations.list[i];
+    const double r = residuals.each[i];
+    sum += o.weight * r * r;
+    weights += o.weight;
+    if (o.weight == 0) continue;
+    report.largest_stress = std::max(report.largest_stress, std::abs(o.value));
+    if (std::abs(r) >= report.max) {
+      report.max = std::abs(r);
+      report.where = observations.strains[i];
+    }
+  }
+  report.rms = std::sqrt(sum / weights);
+  report.uncovered = residuals.uncovered;
+}
+
+// The potential whose derivatives follow the points best, with W = 0 and no stress at zero strain.
+nurbs::SurfaceFit fit_potential(const nurbs::Knots& first, const nurbs::Knots& second, const Observations& observations,
+                                bool symmetric, double smoothing) {
+  std::vector<nurbs::SurfaceObservation> all = observations.list;
+  const double sum = sum_of_weights(all);
+  const double size = first.last() - first.first();
+  all.push_back({0, 0, 0, 0, 0, sum / (size * size)}); // the constant, seen by nothing else
+  all.push_back({0, 0, 1, 0, 0, sum});
+  all.push_back({0, 0, 0, 1, 0, sum});
+  nurbs::SurfaceFit fit = nurbs::fit(first, second, all, {smoothing, 3, symmetric});
+  // what is left of them, to rounding: control values at the Greville abscissae are a linear function
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    const nurbs::SurfaceJet<1> zero = nurbs::evaluate(fit.surface, 0, 0);
+    const double slope_v = symmetric ? zero.u[0] : zero.v[0];
+    const std::vector<double> us = nurbs::greville(first);
+    const std::vector<double> vs = nurbs::greville(second);
+    std::size_t k = 0;
+    for (const double u : us) {
+      for (const double v : vs) fit.surface.points[k++][0] -= zero.value[0] + zero.u[0] * u + slope_v * v;
+    }
+  }
+  return fit;
+}
+
+// A stress as a surface of its own, with no stress at zero strain.
+nurbs::SurfaceFit fit_stress(const nurbs::Knots& first, const nurbs::Knots& second,
+                             std::vector<nurbs::SurfaceObservation> observations, double smoothing) {
+  observations.push_back({0, 0, 0, 0, 0, sum_of_weights(observations)});
+  nurbs::SurfaceFit fit = nurbs::fit(first, second, observations, {smoothing, 2, false});
+  const double left = nurbs::evaluate(fit.surface, 0, 0).value[0];
+  for (nurbs::Point<1>& point : fit.surface.points) point[0] -= left;
+  return fit;
+}
+
+double smallest_span(const std::vector<double>& breaks) {
+  double smallest = breaks.back() - breaks.front();
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) smallest = std::min(smallest, breaks[i + 1] - breaks[i]);
+  return smallest;
+}
+
+PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
+             const NurbsOptions& options) {
+  const std::vector<double> ends = strain_breaks(range, options.net[0] - options.degree, knee);
+  const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
+  auto table = std::make_shared<PdTable>();
+  PdFit fit;
+  Observations observations = gradients(points, reported);
+  nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, options.smoothing);
+  table->potential = std::move(potential.surface);
+  table->domain = domain_of(points, range, true);
+  // rounding of the difference against kinks of the second derivatives within it
+  table->near = 1e-4 * smallest_span(ends);
+  if (options.potential) {
+    report_residuals(potential.residuals, observations, fit.report);
+    judge(
+        [&](double e1, double e2) {
+          const nurbs::SurfaceJet<1> w = nurbs::evaluate(table->potential, e1, e2);
+          return TableStress{w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
+        },
+        table->domain, ends, ends, fit.report);
+  } else {
+    for (nurbs::SurfaceObservation& o : observations.list) { // S2(a, b) = S1(b, a)
+      if (o.order_v == 1) std::swap(o.u, o.v);
+      o.order_u = o.order_v = 0;
+    }
+    const nurbs::Knots of_stress = nurbs::from_breaks(options.degree, ends);
+    nurbs::SurfaceFit stress = fit_stress(of_stress, of_stress, observations.list, options.smoothing);
+    table->stress = std::move(stress.surface);
+    report_residuals(stress.residuals, observations, fit.report);
+    judge(
+        [&](double e1, double e2) {
+          const nurbs::SurfaceJet<1> s1 = nurbs::evaluate(*table->stress, e1, e2);
+          const nurbs::SurfaceJet<1> s2 = nurbs::evaluate(*table->stress, e2, e1);
+          return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.v[0], s2.u[0]};
+        },
+        table->domain, ends, ends, fit.report);
+  }
+  fit.table = std::move(table);
+  return fit;
+}
+
+LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> shear, StrainRange range,
+             std::optional<double> knee, const NurbsOptions& options) {
+  auto table = std::make_shared<LeTable>();
+  LeFit fit;
+  const std::vector<double> ends1 = strain_breaks(range, options.net[0] - options.degree, knee);
+  const std::vector<double> ends2 = strain_breaks(range, options.net[1] - options.degree, knee);
+  Observations observations = gradients(points, points.size());
+  nurbs::SurfaceFit potential =
+      fit_potential(nurbs::from_breaks(options.degree + 1, ends1), nurbs::from_breaks(options.degree + 1, ends2),
+                    observations, false, options.smoothing);
+  table->potential = std::move(potential.surface);
+  table->domain = domain_of(points, range, false);
+  if (options.potential) {
+    report_residuals(potential.residuals, observations, fit.report);
+    judge(
+        [&](double e1, double e2) {
+          const nurbs::SurfaceJet<1> w = nurbs::evaluate(table->potential, e1, e2);
+          return TableStress{w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
+        },
+        table->domain, ends1, ends2, fit.report);
+  } else {
+    const nurbs::Knots knots1 = nurbs::from_breaks(options.degree, ends1);
+    const nurbs::Knots knots2 = nurbs::from_breaks(options.degree, ends2);
+    std::vector<nurbs::SurfaceObservation> first;
+    std::vector<nurbs::SurfaceObservation> second;
+    for (const nurbs::SurfaceObservation& o : observations.list) {
+      (o.order_u == 1 ? first : second).push_back({o.u, o.v, 0, 0, o.value, o.weight});
+    }
+    nurbs::SurfaceFit s11 = fit_stress(knots1, knots2, std::move(first), options.smoothing);
+    nurbs::SurfaceFit s22 = fit_stress(knots1, knots2, std::move(second), options.smoothing);
+    nurbs::Residuals residuals{0, 0, 0, {}, std::max(s11.residuals.uncovered, s22.residuals.uncovered)};
+    std::size_t of_first = 0;
+    std::size_t of_second = 0;
+    for (const nurbs::SurfaceObservation& o : observations.list) {
+      residuals.each.push_back(o.order_u == 1 ? s11.residuals.each[of_first++] : s22.residuals.each[of_second++]);
+    }
+    table->first = std::move(s11.surface);
+    table->second = std::move(s22.surface);
+    report_residuals(residuals, observations, fit.report);
+    judge(
+        [&](double e1, double e2) {
+          const nurbs::SurfaceJet<1> s1 = nurbs::evaluate(*table->first, e1, e2);
+          const nurbs::SurfaceJet<1> s2 = nurbs::evaluate(*table->second, e1, e2);
+          return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.u[0], s2.v[0]};
+        },
+        table->domain, ends1, ends2, fit.report);
+  }
+
+  double largest = 0;
+  for (const ShearPoint& point : shear) {
+    if (!std::isfinite(point.gamma) || !std::isfinite(point.s12) || !(point.weight >= 0)) {
+      throw std::invalid_argument(
+          fmt::format("shear point with strain {}, stress {} and weight {}", point.gamma, point.s12, point.weight));
+    }
+    largest = std::max(largest, std::abs(point.gamma));
+  }
+  if (!(largest > 0)) throw std::invalid_argument("le_nurbs needs points of shear strain and stress");
+  // as many spans on each side of zero as the surface has in all
+  const int half = options.net[0] - options.degree;
+  std::vector<double> ends;
+  for (int i = -half; i <= half; ++i) {
+    const double part = static_cast<double>(i) / half;
+    const double size = knee ? 2 * *knee : 0; // 2 E12 of the strain at the knee
+    ends.push_back(i == half ? largest : knee ? size * std::sinh(part * std::asinh(largest / size)) : largest * part);
+  }
+  ends.front() = -largest;
+  const nurbs::Knots knots = nurbs::from_breaks(options.degree + 1, ends);
+  std::vector<nurbs::CurveObservation> slopes;
+  double sum = 0;
+  for (const ShearPoint& point : shear) {
+    slopes.push_back({point.gamma, 1, point.s12, point.weight});
+    slopes.push_back({-point.gamma, 1, -point.s12, point.weight});
+    sum += 2 * point.weight;
+  }
+  slopes.push_back({0, 0, 0, sum / (largest * largest)});
+  nurbs::CurveFit curve = nurbs::fit(knots, slopes, {options.smoothing, 3, false});
+  for (std::size_t i = 0, j = curve.curve.points.size() - 1; i < j; ++i, --j) { // even to rounding
+    curve.curve.points[i] = curve.curve.points[j] = 0.5 * (curve.curve.points[i] + curve.curve.points[j]);
+  }
+  const double left = nurbs::evaluate(curve.curve, 0).value[0];
+  for (nurbs::Point<1>& point : curve.curve.points) point[0] -= left;
+  table->shear = std::move(curve.curve);
+  fit.shear_report.rms = curve.residuals.rms;
+  fit.shear_report.max = curve.residuals.max;
+  fit.shear_report.where = Vec2(std::abs(slopes[curve.residuals.where].u), 0);
+  fit.shear_report.uncovered = curve.residuals.uncovered;
+  for (const ShearPoint& point : shear) {
+    fit.shear_report.largest_stress = std::max(fit.shear_report.largest_stress, std::abs(point.s12));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double gamma : places_in(ends)) {
+    const double stiffness = nurbs::evaluate(table->shear, gamma).second[0];
+    if (stiffness >= least) continue;
+    least = stiffness;
+    fit.shear_report.not_monotone = Vec2(gamma, 0);
+  }
+  fit.shear_report.monotone = least >= 0;
+  fit.table = std::move(table);
+  return fit;
+}
+
+StrainRange range_for_law(const NurbsOptions& options) {
+  if (!options.range) throw std::invalid_argument("a table of a law needs its range of strains");
+  return *options.range;
+}
+
+} // namespace
+
+std::vector<double> strain_breaks(StrainRange range, int spans, std::optional<double> knee) {
+  const double first = logarithmic(range.min);
+  const double last = logarithmic(range.max);
+  std::vector<double> ends;
+  for (int i = 0; i <= spans; ++i) {
+    const double part = static_cast<double>(i) / spans;
+    const double strain =
+        knee ? *knee * std::sinh((1 - part) * std::asinh(first / *knee) + part * std::asinh(last / *knee))
+             : (1 - part) * first + part * last;
+    ends.push_back(0.5 * std::expm1(2 * strain));
+  }
+  ends.front() = range.min;
+  ends.back() = range.max;
+  return ends;
+}
+
+std::vector<StressPoint> sample(const Law& law, std::span<const double> first, std::span<const double> second,
+                                double time) {
+  std::vector<StressPoint> points;
+  Response response;
+  for (const double e1 : first) {
+    for (const double e2 : second) {
+      if (!ask(law, Vec3(e1, e2, 0), time, response)) continue;
+      points.push_back({e1, e2, response.stress[0], response.stress[1], 1});
+    }
+  }
+  if (points.empty()) throw std::invalid_argument("the law to fit has no state in the range of strains");
+  std::vector<double> sizes;
+  for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
+  const double usual = median(sizes);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].weight = weight_of(sizes[i], usual);
+  return points;
+}
+
+namespace {
+
+void check_pd(std::span<const StressPoint> points, const NurbsOptions& options) {
+  check(options);
+  if (options.net[0] != options.net[1]) {
+    throw std::invalid_argument(
+        fmt::format("pd_nurbs is symmetric: the net must have as many rows as columns, not {} x {}", options.net[0],
+                    options.net[1]));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
+}
+
+} // namespace
+
+PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
+  check_pd(points, options);
+  return pd_fit(points, points.size(), range_of(points, options.range), options.knee, options);
+}
+
+PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points,
+                   double fill) {
+  check_pd(points, options);
+  const StrainRange range = range_for_law(options);
+  check_isotropic(law, range, time);
+  const int spans = options.net[0] - options.degree;
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
+  const std::vector<double> places = places_in(strain_breaks(range, spans, knee));
+  std::vector<StressPoint> all(points.begin(), points.end());
+  for (StressPoint& point : sample(law, places, places, time)) {
+    if (point.e2 > point.e1) continue; // its mirror image is there
+    if (point.e2 < point.e1) point.weight *= 2;
+    if (!points.empty()) point.weight *= fill;
+    all.push_back(point);
+  }
+  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee, options);
+}
+
+LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear,
+                   const NurbsOptions& options) {
+  check(options);
+  for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
+  return le_fit(points, shear, range_of(points, options.range), options.knee, options);
+}
+
+LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
+  check(options);
+  const StrainRange range = range_for_law(options);
+  const int spans = std::max(options.net[0], options.net[1]) - options.degree;
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
+  const std::vector<StressPoint> points =
+      sample(law, places_in(strain_breaks(range, options.net[0] - options.degree, knee)),
+             places_in(strain_breaks(range, options.net[1] - options.degree, knee)), time);
+  std::vector<ShearPoint> shear;
+  const double largest = range.max - range.min; // 2 E12 of the principal strains max and min
+  const int count = 6 * (options.net[0] - options.degree);
+  const double size = 2 * knee.value_or(largest);
+  for (int i = 1; i <= count; ++i) {
+    const double gamma = i < count ? size * std::sinh(std::asinh(largest / size) * i / count) : largest;
+    Response response;
+    if (ask(law, Vec3(0, 0, gamma), time, response)) shear.push_back({gamma, response.stress[2], 1});
+  }
+  std::vector<double> sizes;
+  for (const ShearPoint& point : shear) sizes.push_back(std::abs(point.s12));
+  if (shear.empty()) throw std::invalid_argument("the law to fit has no state in shear");
+  const double usual = median(std::move(sizes));
+  for (ShearPoint& point : shear) point.weight = weight_of(std::abs(point.s12), usual);
+  return le_fit(points, shear, range, knee, options);
+}
+
+} // namespace pneuma::solver::material
