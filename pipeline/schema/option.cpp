@@ -337,7 +337,7 @@ private:
   void fail(const Mark& mark, std::string message) { context_.problems.push_back({mark, std::move(message), true}); }
 
   void not_yet(const Mark& mark, const std::string& what, const std::string& instead) {
-    if (context_.only_available) fail(mark, fmt::format("{} is not available yet; {}", what, instead));
+    fail(mark, fmt::format("{} is not available yet; {}", what, instead));
   }
 
   void check_name(const std::string& name, const Mark& mark, Value& value) {

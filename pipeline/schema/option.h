@@ -111,12 +111,11 @@ std::optional<double> optional_number(const Value& group, const std::string& key
 std::optional<int> optional_integer(const Value& group, const std::string& key);
 std::string text_of(const Value& group, const std::string& key);
 
-// Checks a tree against an option and converts it. Every problem is added to `problems`; with `only_available` off,
-// what is not available yet is passed over in silence. The places of values that the user gave go to `origins` by path.
+// Checks a tree against an option and converts it. Every problem is added to `problems`. The places of values
+// that the user gave go to `origins` by path.
 struct Check {
   std::vector<Problem>& problems;
   std::map<std::string, Mark>& origins;
-  bool only_available = true;
 };
 Value check(const Option& option, const Node& node, const std::string& path, Check& context);
 

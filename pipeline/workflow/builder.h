@@ -33,6 +33,7 @@ public:
   std::vector<Problem> problems;
 
   Workflow build(const schema::Node& tree);
+  Workflow build_materials(); // of a file of materials alone
 
 private:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
@@ -42,14 +43,8 @@ private:
 
   // builder_cushion.cpp
   void read_site(const Value& site);
-  Material material_of(const std::string& name, const Value& value) const;
-  void add_material(const std::string& name, const Value& value);
-  void read_materials(const Value& root);
-  // Names of materials that foils of the file use: a file may hold laws that are not available yet.
-  static std::set<std::string> used_materials(const Value& root);
-  void read_materials_file(const Value& path, const Value& root);
-  // Only what foils use belongs to the settings of a stage.
-  void keep_used_materials();
+  // In the user's file places are relative to the folder of the workflow file.
+  void make_origins_relative();
   void read_cushion(const Value& cushion);
   void read_plan(const Value& plan);
   void read_edges(const Value& edges);
@@ -65,6 +60,31 @@ private:
   void read_walls(const Value& between, ChamberSettings& chamber, std::map<std::size_t, std::string>& gaps);
   // Of a value and of all that lies in it.
   void copy_origin(const std::string& from, const std::string& to);
+
+  // builder_materials.cpp
+  void read_materials(const Value& root);
+  void read_materials_file(const std::filesystem::path& file, const Mark& named);
+  void add_material(const std::string& name, const Value& value);
+  Material material_of(const std::string& name, const Value& value);
+  // `entry`: of another temperature; what it leaves out is as in the material
+  MaterialLaw law_of(const Value& material, const Value* entry);
+  MaterialLaw elastic_of(const Value& material, const Value* entry);
+  J2Law j2_of(const Value& material, const Value* entry);
+  void check_hardening(const Value& hardening, const J2Law& law);
+  ViscositySettings viscosity_of(const Value& viscosity, const J2Law& law);
+  OgdenLaw ogden_of(const Value& terms);
+  TableLaw table_of(const Value& material);
+  std::optional<Strength> strength_of(const Value& material);
+  // A key that this kind of law needs: "`etfe` lacks ...".
+  void need(const Value& material, const std::string& key, const std::string& why);
+  // What is known only when all materials and foils are: what tables are fitted to, their points, the site's
+  // temperature; drops what no foil uses.
+  void finish_materials();
+  void check_fits();
+  // Materials that foils use and those that these are fitted to.
+  std::set<std::string> used_materials() const;
+  void read_points(const std::string& name);
+  void check_temperature(const Material& material);
 
   // builder_stages.cpp
   void add_mesh(const Value& mesh);
@@ -117,6 +137,7 @@ private:
   bool connections_known_ = true; // between chambers
   std::vector<std::string> material_names_, foil_names_, chamber_names_;
   std::vector<std::pair<std::string, Mark>> material_places_; // where foils name them
+  std::map<std::string, Value> tables_;                       // what was read of table materials
 };
 
 } // namespace pneuma::pipeline::workflow

@@ -62,16 +62,17 @@ Workflow Builder::build(const Node& tree) {
   if (const Value* site = root["site"]) read_site(*site);
   read_materials(root);
   if (const Value* cushion = root.find("cushion")) read_cushion(*cushion);
+  finish_materials();
   if (const Value* mesh = root.find("mesh")) add_mesh(*mesh);
   if (const Value* stages = root.find("stages")) read_stages(*stages);
   check_gravity();
-  keep_used_materials();
-  if (!is_stage_file_) {
-    for (auto& [path, mark] : workflow_.origins) {
-      mark.file = folder_relative(mark.file, workflow_.file.parent_path());
-    }
-  }
+  make_origins_relative();
   return std::move(workflow_);
+}
+
+void Builder::make_origins_relative() {
+  if (is_stage_file_) return;
+  for (auto& [path, mark] : workflow_.origins) mark.file = folder_relative(mark.file, workflow_.file.parent_path());
 }
 
 void Builder::read_site(const Value& site) {
@@ -92,84 +93,6 @@ void Builder::read_site(const Value& site) {
     if (out.up.norm() == 0) return fail(up->mark, "`up` must not be zero");
     out.up = unit(out.up);
   }
-}
-
-Material Builder::material_of(const std::string& name, const Value& value) const {
-  Material material;
-  material.name = name;
-  material.mark = value.key;
-  if (value.text == "elastic") {
-    material.law = ElasticLaw{number_of(value, "E"), number_of(value, "nu")};
-  } else {
-    material.law = MooneyRivlinLaw{number_of(value, "C1"), number_of(value, "C2")};
-  }
-  if (const Value* tension_field = value["tension_field"]) material.tension_field = tension_field->flag;
-  material.density = optional_number(value, "density");
-  material.thermal_expansion = optional_number(value, "thermal_expansion");
-  material.source = text_of(value, "source");
-  return material;
-}
-
-void Builder::add_material(const std::string& name, const Value& value) {
-  material_names_.push_back(name);
-  if (value.valid) workflow_.materials[name] = material_of(name, value);
-}
-
-void Builder::read_materials(const Value& root) {
-  const Value* materials = root.find("materials");
-  if (materials == nullptr) return;
-  if (materials->read_as != nullptr && materials->read_as->type == schema::Type::table) {
-    for (const auto& [name, value] : materials->members) add_material(name, value);
-    return;
-  }
-  materials_known_ = materials->valid;
-  if (!materials->valid) return;
-  if (materials->read_as->type == schema::Type::text) return read_materials_file(*materials, root);
-  for (const Value& item : materials->items) read_materials_file(item, root);
-}
-
-std::set<std::string> Builder::used_materials(const Value& root) {
-  std::set<std::string> names;
-  const Value* cushion = root.find("cushion");
-  const Value* foils = cushion != nullptr ? cushion->find("foils") : nullptr;
-  if (foils == nullptr) return names;
-  for (const Value& foil : foils->items) names.insert(text_of(foil, "material"));
-  return names;
-}
-
-void Builder::read_materials_file(const Value& path, const Value& root) {
-  const auto file = (workflow_.file.parent_path() / path.text).lexically_normal();
-  const std::size_t before = problems.size();
-  const std::string text = schema::read_text(file, path.mark, problems);
-  const Node tree = schema::parse_yaml(text, file.generic_string(), problems);
-  if (problems.size() > before && tree.kind == NodeKind::null) {
-    materials_known_ = false;
-    return;
-  }
-  if (tree.kind != NodeKind::map) {
-    materials_known_ = false;
-    return fail(tree.mark, "a file of materials is a map: NAME: {law: elastic, E: 900 MPa, nu: 0.45}");
-  }
-  const std::set<std::string> used = used_materials(root);
-  for (const schema::Entry& entry : tree.entries) {
-    if (std::find(material_names_.begin(), material_names_.end(), entry.key) != material_names_.end()) {
-      fail(entry.mark, fmt::format("the material `{}` is also in another file of materials; keep one", entry.key));
-      continue;
-    }
-    Node one;
-    one.kind = NodeKind::map;
-    one.entries = {entry};
-    schema::Check context{problems, workflow_.origins, used.contains(entry.key)};
-    const Value table = schema::check(materials_file_options(), one, "materials", context);
-    for (const auto& [name, value] : table.members) add_material(name, value);
-  }
-}
-
-void Builder::keep_used_materials() {
-  std::erase_if(workflow_.materials, [&](const auto& item) {
-    return std::none_of(workflow_.cushion.foils.begin(), workflow_.cushion.foils.end(),
-                        [&](const FoilSettings& foil) { return foil.material == item.first; });
-  });
 }
 
 void Builder::read_cushion(const Value& cushion) {

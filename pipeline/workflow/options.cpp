@@ -390,39 +390,182 @@ Option stages(bool in_stage_file) {
   return table("stages", variant("ID", "run", runs, "a stage"), "the stages by their IDs");
 }
 
+Option youngs_modulus(const std::string& name, const std::string& what) {
+  return quantity(name, "Pa", what).positive().usual(1e6, 1e10, "foils have 1 MPa to 10 GPa");
+}
+
+Option poissons_ratio(const std::string& name, const std::string& what) {
+  return number(name, what).within({-1, 0.5, "above -1, up to 0.5", false, true});
+}
+
+// E, nu of an isotropic foil.
+Options isotropic() {
+  return {youngs_modulus("E", "Young's modulus"), poissons_ratio("nu", "Poisson's ratio")};
+}
+
+Options elastic() {
+  return isotropic() +
+         Options{youngs_modulus("E1", "Young's modulus along the warp, of an orthotropic foil"),
+                 youngs_modulus("E2", "Young's modulus across the warp"),
+                 number("nu12", "narrowing across the warp in tension along it, nu12^2 < E1 / E2"),
+                 quantity("G12", "Pa", "shear modulus").positive().usual(1e5, 1e10, "foils have 0.1 MPa to 10 GPa")};
+}
+
+Option hardening() {
+  const Option branch = group("branch",
+                              {quantity("stress", "Pa", "yield stress from which on it counts")
+                                   .required()
+                                   .positive()
+                                   .usual(1e4, 1e9, "foils yield at 10 kPa to 1 GPa"),
+                               quantity("modulus", "Pa", "how the yield stress rises").required()},
+                              "a branch");
+  return list("hardening", branch, "branches of the yield stress, the last goes on").items(1, 1000);
+}
+
+// The law at another temperature: what changes with it.
+Option other_temperatures(const Options& keys) {
+  return list("temperature",
+              group("temperature", Options{quantity("at", "K", "the temperature").required().positive()} + keys,
+                    "what the law has there; the rest is as in the law itself"),
+              "the law at other temperatures; linear between neighbours, an error outside")
+      .items(1, 1000);
+}
+
+Options j2() {
+  Options keys = isotropic();
+  for (Option& key : keys) key = key.required();
+  const Option viscosity =
+      group("viscosity",
+            {choice("model",
+                    {value("peric", "stress = yield stress (1 + mu rate)^epsilon"),
+                     value("perzyna", "stress = yield stress (1 + (mu rate)^epsilon)")},
+                    "how the stress rises with the rate of plastic strain")
+                 .required(),
+             quantity("mu", "s", "time scale").required().positive().usual(1e-9, 1e12, "usually 1 ns to 30000 years"),
+             number("epsilon", "sensitivity to the rate").required().within({0, 10, "above 0, up to 10", false, true}),
+             quantity("threshold", "Pa", "stress from which on it flows, up to first yield; without it first yield")
+                 .at_least(0, "at least 0 Pa")},
+            "flow with time");
+  return keys +
+         Options{
+             hardening().required(),
+             choice("modulus",
+                    {value("plastic", "d stress / d plastic strain"), value("tangent", "d stress / d strain, < E")},
+                    "what the moduli of the branches are")
+                 .otherwise("plastic"),
+             flag("softening", "a branch before the last may fall; the result then depends on the mesh")
+                 .otherwise("off"),
+             choice("strain",
+                    {value("logarithmic", "large strain, Kirchhoff stress"),
+                     value("small", "Green-Lagrange strain and second Piola-Kirchhoff stress, up to a few percent")},
+                    "measure of strain")
+                 .otherwise("logarithmic"),
+             viscosity,
+             other_temperatures(isotropic() + Options{hardening()})};
+}
+
+// Of PD-NURBS and LE-NURBS.
+Options table_law(bool along_axes) {
+  const auto files = [](const char* name, const char* what) {
+    return either(name,
+                  {text("file", "CSV file beside the one that names it"),
+                   list("files", text("file", "CSV file"), "several").items(1, 1000)},
+                  what);
+  };
+  const auto row = [](std::size_t size, const char* what) {
+    return list("row", number("value", "value"), what).items(size, size);
+  };
+  Options keys = {
+      files("data", "points of tests: strain_1, strain_2, stress_1, stress_2 and perhaps weight"),
+      list("points", row(5, "a point"),
+           "such points in place: Green-Lagrange strains, second Piola-Kirchhoff stresses in Pa, weight"),
+      choice("measure",
+             {value("engineering", "change of length, force per undeformed area"),
+              value("green_lagrange", "with second Piola-Kirchhoff stress")},
+             "of strains and stresses in `data`")
+          .otherwise("engineering"),
+      word("fit_to", "another material that the table shall follow"),
+      list("net", integer("n", "control points").between(3, 1000, "from 3 to 1000"),
+           "control points of the table along both strains")
+          .items(2, 2)
+          .otherwise("[25, 25]"),
+      integer("degree", "of the stress surfaces").between(2, 6, "from 2 to 6").otherwise("3"),
+      list("range", number("strain", "Green-Lagrange strain").within({-0.5, 10, "above -0.5, up to 10", false, true}),
+           "of strains in the table; without it that of the points")
+          .items(2, 2),
+      choice("outside",
+             {value("error", "ends the stage"), value("linear", "the stress goes on linearly, and that is reported")},
+             "what happens where a strain leaves the data")
+          .otherwise("error"),
+      flag("potential", "the stresses are derivatives of one stored energy").otherwise("on"),
+      number("smoothing", "weight of bends in the surfaces against residuals")
+          .within({0, 1e6, "above 0, up to 1e6", false, true})
+          .otherwise("1e-6"),
+      poissons_ratio("nu", "of the thickness, about which the points say nothing; 0.5: the volume stays")
+          .otherwise("0.5")};
+  if (along_axes) {
+    keys.push_back(files("shear_data", "points of shear tests: shear_strain (2 E12), shear_stress (S12)"));
+    keys.push_back(list("shear_points", row(3, "a point"), "such points in place: 2 E12, S12 in Pa, weight"));
+  }
+  return keys;
+}
+
+Option strength() {
+  const Option factor = group("temperature",
+                              {quantity("at", "K", "the temperature").required().positive(),
+                               number("factor", "of the strength there").required().positive()},
+                              "a temperature");
+  return group("strength",
+               {quantity("characteristic", "Pa", "strength that design starts from").required().positive(),
+                quantity("weld", "Pa", "of a weld, at break").positive(),
+                quantity("ultimate", "Pa", "of the foil, at break").positive(),
+                table("factors", number("NAME", "factor").positive(), "that the strength is divided by, all of them")
+                    .otherwise("{}"),
+                list("temperature", factor, "by which it is divided too, linear between").otherwise("[]"),
+                text("source", "where the values come from")},
+               "what the report compares stresses with");
+}
+
 Option material() {
-  const char* elastic = "the isotropic elastic law is available: {law: elastic, E: 900 MPa, nu: 0.45}";
   const auto law = [](const char* name, const Options& keys, const char* what) {
     return group(
         name,
-        keys +
-            Options{flag("tension_field", "a foil that cannot carry compression").otherwise("off"),
-                    quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
-                    quantity("thermal_expansion", "K-1", "linear"), text("source", "where the values come from"),
-                    table("strength", text("value", ""), "").unavailable("the report does not use strengths so far")},
+        keys + Options{flag("tension_field", "a foil that cannot carry compression").otherwise("off"),
+                       quantity("density", "kg/m3", "for gravity").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
+                       quantity("thermal_expansion", "K-1", "linear"), strength(),
+                       text("source", "where the values come from")},
         what);
   };
-  const auto later = [](const char* name) {
-    return group(name, {}, "").unavailable("elastic, mooney_rivlin and neo_hooke are available");
-  };
+  const Option at =
+      quantity("at", "K", "temperature at which the law's own values hold").positive().otherwise("23 degC");
   const Option C1 = quantity("C1", "Pa", "of W = C1 (I1 - 3) + C2 (I2 - 3); half the shear modulus without C2")
                         .required()
                         .positive()
                         .usual(1e4, 1e9, "rubber and foils have 10 kPa to 1 GPa");
+  const Option term =
+      group("term",
+            {quantity("mu", "Pa", "of W = sum mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3)").required(),
+             number("alpha", "exponent of the stretches").required()},
+            "a term");
   return variant(
       "NAME", "law",
-      {law("elastic",
-           {quantity("E", "Pa", "Young's modulus").required().positive().usual(1e6, 1e10, "foils have 1 MPa to 10 GPa"),
-            number("nu", "Poisson's ratio").required().within({-1, 0.5, "above -1, up to 0.5", false, true}),
-            text("E1", "").unavailable(elastic), text("E2", "").unavailable(elastic),
-            text("nu12", "").unavailable(elastic), text("G12", "").unavailable(elastic)},
-           "isotropic, St. Venant-Kirchhoff"),
+      {law("elastic", elastic() + Options{at, other_temperatures(elastic())},
+           "St. Venant-Kirchhoff, isotropic (E, nu) or orthotropic (E1, E2, nu12, G12)")
+           .exactly_one({"E", "E1"}),
+       law("j2", j2() + Options{at}, "von Mises plasticity, viscoplastic with `viscosity`"),
+       law("ogden", {list("terms", term, "of the stored energy").items(1, 8).required()},
+           "incompressible, hyperelastic"),
        law("mooney_rivlin",
            {C1,
             quantity("C2", "Pa", "of W").required().at_least(0, "at least 0 Pa").usual(0, 1e9, "usually up to 1 GPa")},
            "incompressible, hyperelastic"),
-       law("neo_hooke", {C1}, "incompressible, hyperelastic: mooney_rivlin with C2 = 0"), later("j2"), later("ogden"),
-       later("le_nurbs"), later("pd_nurbs")},
+       law("neo_hooke", {C1}, "incompressible, hyperelastic: mooney_rivlin with C2 = 0"),
+       law("pd_nurbs", table_law(false), "isotropic table of principal stresses over principal strains")
+           .at_least_one({"data", "points", "fit_to"})
+           .not_both("data", "points"),
+       law("le_nurbs", table_law(true), "table of stresses over strains along the foil's axes")
+           .exactly_one({"data", "points", "fit_to"})
+           .not_both("shear_data", "shear_points")},
       "a material");
 }
 

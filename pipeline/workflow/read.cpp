@@ -73,6 +73,16 @@ ReadResult read_workflow(const std::filesystem::path& file) {
   return result;
 }
 
+ReadResult read_materials(const std::filesystem::path& file) {
+  Builder builder(file, false);
+  ReadResult result;
+  result.workflow = builder.build_materials();
+  result.workflow.file = file;
+  result.problems = std::move(builder.problems);
+  put_in_order(result.problems, file.generic_string());
+  return result;
+}
+
 Workflow read_stage(const std::filesystem::path& file) {
   Builder builder(file, true);
   const std::string name = file.generic_string();

@@ -34,9 +34,52 @@ struct Site {
   bool gravity = true;
 };
 
+// Isotropic, St. Venant-Kirchhoff.
 struct ElasticLaw {
   double E = 0;  // Pa
   double nu = 0; // -
+};
+
+// 1 along the foil's warp; nu12: narrowing along 2 in tension along 1.
+struct OrthotropicLaw {
+  double E1 = 0, E2 = 0; // Pa
+  double nu12 = 0;       // -
+  double G12 = 0;        // Pa
+};
+
+// From this yield stress on, up to that of the next branch; Pa.
+struct HardeningBranch {
+  double stress = 0;
+  double modulus = 0; // plastic or tangent, as the law says
+};
+
+enum class ModulusKind : std::uint8_t { plastic, tangent }; // d stress / d plastic strain, or d stress / d strain
+
+struct ViscositySettings {
+  enum class Model : std::uint8_t { peric, perzyna } model = Model::peric;
+  double mu = 0;                   // s
+  double epsilon = 1;              // -
+  std::optional<double> threshold; // Pa; none: first yield
+};
+
+// J2 plasticity, isotropic hardening; viscoplastic with a viscosity.
+struct J2Law {
+  double E = 0;  // Pa
+  double nu = 0; // -
+  std::vector<HardeningBranch> hardening;
+  ModulusKind modulus = ModulusKind::plastic;
+  bool softening = false;  // a branch may fall
+  bool logarithmic = true; // large strain; otherwise small strain
+  std::optional<ViscositySettings> viscosity;
+};
+
+// Incompressible, W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3).
+struct OgdenLaw {
+  struct Term {
+    double mu = 0;    // Pa
+    double alpha = 0; // -
+  };
+  std::vector<Term> terms;
 };
 
 // Incompressible, W = C1 (I1 - 3) + C2 (I2 - 3); neo-Hooke is C2 = 0.
@@ -44,16 +87,59 @@ struct MooneyRivlinLaw {
   double C1 = 0, C2 = 0; // Pa
 };
 
-// A resolved material. Laws that the schema knows and the solver does not are refused when read.
+// Elastic, from a table that is fitted to test points, to another material, or to points filled up with one: PD-NURBS
+// in principal directions (isotropic), LE-NURBS along the foil's axes.
+struct TableLaw {
+  // Green-Lagrange strains, -; second Piola-Kirchhoff stresses, Pa.
+  struct Point {
+    double strain_1 = 0, strain_2 = 0, stress_1 = 0, stress_2 = 0, weight = 1;
+  };
+  struct ShearPoint {
+    double strain = 0, stress = 0, weight = 1; // 2 E12; S12, Pa
+  };
+  enum class Kind : std::uint8_t { pd_nurbs, le_nurbs } kind = Kind::pd_nurbs;
+  std::vector<Point> points;
+  std::vector<ShearPoint> shear_points; // of le_nurbs
+  std::string fit_to;                   // material; empty: none
+  std::array<int, 2> net = {25, 25};    // control points of the stress surfaces
+  int degree = 3;
+  std::optional<std::array<double, 2>> range; // Green-Lagrange strain; none: that of the points
+  bool goes_on = false;                       // linearly outside the data; otherwise an error
+  bool potential = true;                      // stresses are derivatives of one potential
+  double smoothing = 1e-6;                    // weight of the second derivatives
+  double nu = 0.5;                            // of the thickness, about which the points say nothing
+};
+
+using MaterialLaw = std::variant<ElasticLaw, OrthotropicLaw, J2Law, OgdenLaw, MooneyRivlinLaw, TableLaw>;
+
+// What the report compares stresses with: f_d = characteristic / (product of factors x factor of the temperature).
+struct Strength {
+  double characteristic = 0;                      // Pa
+  std::optional<double> weld, ultimate;           // Pa
+  std::map<std::string, double> factors;          // by name, -
+  std::vector<std::array<double, 2>> temperature; // K, factor; rising
+  std::string source;
+};
+
+// A resolved material.
 struct Material {
   std::string name;
-  std::variant<ElasticLaw, MooneyRivlinLaw> law;
+  MaterialLaw law;                         // at `at`
+  double at = 296.15;                      // K
+  std::map<double, MaterialLaw> other;     // K -> law at this temperature, of the same kind as `law`
   bool tension_field = false;              // cannot carry compression
   std::optional<double> density;           // kg/m3
   std::optional<double> thermal_expansion; // 1/K
+  std::optional<Strength> strength;
   std::string source;
   Mark mark;
 };
+
+// Lowest and highest temperature that a material has values for, K; none: it does not depend on the temperature.
+std::optional<std::array<double, 2>> temperatures_of(const Material& material);
+
+// The law of a material at a temperature between those of its table, K: each value is linear between neighbours.
+MaterialLaw law_at(const Material& material, double temperature);
 
 struct FoilSettings {
   std::string name;
@@ -124,17 +210,16 @@ struct ArcLengthControl {
   std::string foil;    // of displacement (largest); empty: of all foils
 };
 
-// How the path is followed.
 // What part of a stage's load acts when, s.
 struct Moment {
   double time = 0;
   double factor = 0;
 };
 
+// How the path is followed.
 struct Control {
   std::variant<LoadControl, DisplacementControl, VolumeControl, ArcLengthControl> kind;
-  std::optional<int>
-      steps; // output at n equal parts of the path (of each stretch between two moments); none: automatic
+  std::optional<int> steps;     // output at n equal parts of the path, or of each stretch between two moments
   std::vector<Moment> schedule; // of load control, from nothing at 0 s, linear between; empty: no time passes
 };
 
@@ -243,7 +328,7 @@ struct Workflow {
   std::string name;
   Site site;
   Cushion cushion;
-  std::map<std::string, Material> materials; // those the foils use
+  std::map<std::string, Material> materials; // those the foils use, and those that their tables are fitted to
   std::vector<StageSettings> stages;         // in the order of the file, `mesh` first
 
   // Path of keys in stage.yaml ("cushion.foils.0.thickness", "stages.form.prestress.upper") -> where the user wrote the
@@ -258,6 +343,9 @@ struct ReadResult {
 
 // Reads and checks a workflow file. Never throws for what the user wrote; every problem is in the result.
 ReadResult read_workflow(const std::filesystem::path& file);
+
+// Reads and checks a file of materials by itself: `workflow.materials` holds all of them, the rest is empty.
+ReadResult read_materials(const std::filesystem::path& file);
 
 // Reads the stage.yaml that the runner wrote (or a user edited); marks of values point to the user's own file where
 // stage.yaml says where they came from. Throws InputError with all problems, a line each.

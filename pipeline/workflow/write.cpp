@@ -62,21 +62,140 @@ Node site_node(const Site& site) {
   return node;
 }
 
+void add_law(Node& node, const ElasticLaw& law) {
+  add(node, "E", quantity(law.E, "Pa"));
+  add(node, "nu", plain(law.nu));
+}
+
+void add_law(Node& node, const OrthotropicLaw& law) {
+  add(node, "E1", quantity(law.E1, "Pa"));
+  add(node, "E2", quantity(law.E2, "Pa"));
+  add(node, "nu12", plain(law.nu12));
+  add(node, "G12", quantity(law.G12, "Pa"));
+}
+
+// What depends on the temperature.
+void add_law(Node& node, const J2Law& law) {
+  add(node, "E", quantity(law.E, "Pa"));
+  add(node, "nu", plain(law.nu));
+  Node hardening = empty_list();
+  for (const HardeningBranch& branch : law.hardening) {
+    Node item = empty_map();
+    add(item, "stress", quantity(branch.stress, "Pa"));
+    add(item, "modulus", quantity(branch.modulus, "Pa"));
+    hardening.items.push_back(item);
+  }
+  add(node, "hardening", hardening);
+}
+
+void add_law(Node& node, const OgdenLaw& law) {
+  Node terms = empty_list();
+  for (const OgdenLaw::Term& term : law.terms) {
+    Node item = empty_map();
+    add(item, "mu", quantity(term.mu, "Pa"));
+    add(item, "alpha", plain(term.alpha));
+    terms.items.push_back(item);
+  }
+  add(node, "terms", terms);
+}
+
+void add_law(Node& node, const MooneyRivlinLaw& law) {
+  add(node, "C1", quantity(law.C1, "Pa"));
+  add(node, "C2", quantity(law.C2, "Pa"));
+}
+
+Node numbers(std::initializer_list<double> values) {
+  Node node = empty_list();
+  for (const double value : values) node.items.push_back(plain(value));
+  return node;
+}
+
+void add_law(Node& node, const TableLaw& law) {
+  Node points = empty_list(), shear_points = empty_list();
+  for (const TableLaw::Point& p : law.points) {
+    points.items.push_back(numbers({p.strain_1, p.strain_2, p.stress_1, p.stress_2, p.weight}));
+  }
+  for (const TableLaw::ShearPoint& p : law.shear_points) {
+    shear_points.items.push_back(numbers({p.strain, p.stress, p.weight}));
+  }
+  if (!law.points.empty()) add(node, "points", points);
+  if (!law.shear_points.empty()) add(node, "shear_points", shear_points);
+  if (!law.fit_to.empty()) add(node, "fit_to", scalar(law.fit_to));
+  Node net = empty_list();
+  net.items = {plain(law.net[0]), plain(law.net[1])};
+  add(node, "net", net);
+  add(node, "degree", plain(law.degree));
+  if (law.range) add(node, "range", numbers({(*law.range)[0], (*law.range)[1]}));
+  add(node, "outside", scalar(law.goes_on ? "linear" : "error"));
+  add(node, "potential", scalar(law.potential ? "on" : "off"));
+  add(node, "smoothing", plain(law.smoothing));
+  add(node, "nu", plain(law.nu));
+}
+
+const char* name_of(const MaterialLaw& law) {
+  if (std::holds_alternative<J2Law>(law)) return "j2";
+  if (std::holds_alternative<OgdenLaw>(law)) return "ogden";
+  if (std::holds_alternative<MooneyRivlinLaw>(law)) return "mooney_rivlin";
+  if (const auto* table = std::get_if<TableLaw>(&law)) {
+    return table->kind == TableLaw::Kind::pd_nurbs ? "pd_nurbs" : "le_nurbs";
+  }
+  return "elastic";
+}
+
+// What does not depend on the temperature.
+void add_rest(Node& node, const J2Law& law) {
+  add(node, "modulus", scalar(law.modulus == ModulusKind::plastic ? "plastic" : "tangent"));
+  add(node, "softening", scalar(law.softening ? "on" : "off"));
+  add(node, "strain", scalar(law.logarithmic ? "logarithmic" : "small"));
+  if (!law.viscosity) return;
+  const bool is_peric = law.viscosity->model == ViscositySettings::Model::peric;
+  Node viscosity = empty_map();
+  add(viscosity, "model", scalar(is_peric ? "peric" : "perzyna"));
+  add(viscosity, "mu", quantity(law.viscosity->mu, "s"));
+  add(viscosity, "epsilon", plain(law.viscosity->epsilon));
+  if (law.viscosity->threshold) add(viscosity, "threshold", quantity(*law.viscosity->threshold, "Pa"));
+  add(node, "viscosity", viscosity);
+}
+
+Node strength_node(const Strength& strength) {
+  Node node = empty_map();
+  add(node, "characteristic", quantity(strength.characteristic, "Pa"));
+  if (strength.weld) add(node, "weld", quantity(*strength.weld, "Pa"));
+  if (strength.ultimate) add(node, "ultimate", quantity(*strength.ultimate, "Pa"));
+  Node factors = empty_map(), temperature = empty_list();
+  for (const auto& [name, factor] : strength.factors) add(factors, name, plain(factor));
+  for (const auto& [at, factor] : strength.temperature) {
+    Node item = empty_map();
+    add(item, "at", quantity(at, "K"));
+    add(item, "factor", plain(factor));
+    temperature.items.push_back(item);
+  }
+  add(node, "factors", factors);
+  add(node, "temperature", temperature);
+  if (!strength.source.empty()) add(node, "source", scalar(strength.source));
+  return node;
+}
+
 Node material_node(const Material& material) {
   Node node = empty_map();
-  if (const auto* elastic = std::get_if<ElasticLaw>(&material.law)) {
-    add(node, "law", scalar("elastic"));
-    add(node, "E", quantity(elastic->E, "Pa"));
-    add(node, "nu", plain(elastic->nu));
-  } else {
-    const auto& mooney_rivlin = std::get<MooneyRivlinLaw>(material.law);
-    add(node, "law", scalar("mooney_rivlin"));
-    add(node, "C1", quantity(mooney_rivlin.C1, "Pa"));
-    add(node, "C2", quantity(mooney_rivlin.C2, "Pa"));
+  add(node, "law", scalar(name_of(material.law)));
+  std::visit([&](const auto& law) { add_law(node, law); }, material.law);
+  if (const auto* j2 = std::get_if<J2Law>(&material.law)) add_rest(node, *j2);
+  if (!material.other.empty()) {
+    Node temperature = empty_list();
+    for (const auto& [at, other] : material.other) {
+      Node item = empty_map();
+      add(item, "at", quantity(at, "K"));
+      std::visit([&](const auto& law) { add_law(item, law); }, other);
+      temperature.items.push_back(item);
+    }
+    add(node, "at", quantity(material.at, "K"));
+    add(node, "temperature", temperature);
   }
   add(node, "tension_field", scalar(material.tension_field ? "on" : "off"));
   if (material.density) add(node, "density", quantity(*material.density, "kg/m3"));
   if (material.thermal_expansion) add(node, "thermal_expansion", quantity(*material.thermal_expansion, "K-1"));
+  if (material.strength) add(node, "strength", strength_node(*material.strength));
   if (!material.source.empty()) add(node, "source", scalar(material.source));
   return node;
 }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "pipeline/schema/node.h"
+
+namespace pneuma::pipeline::test_data {
+
+// How strains and stresses of a test are meant.
+enum class Measure : std::uint8_t {
+  engineering,    // change of length over length, force per undeformed area: what test machines give
+  green_lagrange, // with second Piola-Kirchhoff stress
+};
+
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+// One row of a test, SI. 1 and 2 are perpendicular and without shear between them: principal, or along the axes.
+struct Row {
+  double strain_1 = not_measured, strain_2 = not_measured;         // -
+  double stress_1 = not_measured, stress_2 = not_measured;         // Pa
+  double shear_strain = not_measured, shear_stress = not_measured; // 2 E12, -; S12, Pa
+  double time = not_measured;                                      // s
+  double temperature = not_measured;                               // K
+  double weight = 1;
+  int line = 0; // in the file
+};
+
+// Reads the text of a CSV file (README.md says what it holds); `name` stands for the file in the marks. `needed`:
+// columns without which it is of no use. Every fault is a problem at its line and column; rows that have one are left
+// out.
+std::vector<Row> parse(const std::string& text, const std::string& name, Measure measure,
+                       const std::vector<std::string>& needed, std::vector<schema::Problem>& problems);
+
+// Strains and stresses of a row in the other measure: stretch l = 1 + e = sqrt(1 + 2 E), nominal stress = l S (no shear
+// between 1 and 2). Shear stays as it is.
+Row converted(const Row& row, Measure from, Measure to);
+
+} // namespace pneuma::pipeline::test_data
