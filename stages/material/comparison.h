@@ -20,8 +20,10 @@ struct TestCurve {
   Ratio ratio; // of the stresses
 };
 
-// The ratio of a test's stresses, the larger 1: least squares; within 1 % of the larger the smaller is none.
-Ratio ratio_of(const std::vector<TestPoint>& points);
+// Reads a file of test data (pipeline/test_data), one test a file. The ratio of its stresses is their least-squares
+// one, the larger 1; below 1 % the smaller is taken to be none, as where it was not measured. Throws InputError with
+// every fault, each with file, line and column, and where the stresses have no common ratio.
+TestCurve read_test(const std::filesystem::path& file);
 
 // How far a law's stresses are from those of a test: the piece is pulled through the measured strains along the axis of
 // the larger stress, with the test's ratio of stresses.

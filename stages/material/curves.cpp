@@ -42,9 +42,7 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
   curve.rate = rate;
   law::TestPiece piece(material, options.angle);
   const law::Control control = law::biaxial(ratio.a, ratio.b);
-  const auto to = [&](int step) {
-    return engineering(options.strain * step / options.steps, options.true_measures);
-  };
+  const auto to = [&](int step) { return engineering(options.strain * step / options.steps, options.true_measures); };
   curve.loading.push_back(piece.state());
   for (int i = 1; i <= options.steps; ++i) {
     if (!pull(piece, control, to(i), rate)) {
@@ -56,10 +54,11 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
   }
   const int axis = driven_axis(ratio);
   const auto force = [axis](const law::TestPiece& at) { return at.state().nominal_stress()[axis]; };
-  for (int i = static_cast<int>(curve.loading.size()) - 2; force(piece) > 0; --i) {
+  const double none = 1e-9 * force(piece); // rounding of an elastic foil that is back
+  for (int i = static_cast<int>(curve.loading.size()) - 2; force(piece) > none; --i) {
     law::TestPiece next = piece;
     if (!pull(next, control, to(i), rate)) return curve;
-    if (force(next) <= 0) {
+    if (force(next) <= none) {
       const double part = force(piece) / (force(piece) - force(next));
       const double duration = rate ? part * (next.state().time - piece.state().time) : 0;
       if (piece.advance(law::stresses({ratio.a, ratio.b, 0}), 0, duration)) curve.unloading.push_back(piece.state());

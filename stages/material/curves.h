@@ -24,7 +24,7 @@ double engineering(double strain, bool true_measures);
 struct Curve {
   std::string material;
   Ratio ratio;
-  std::optional<double> rate; // 1/s; none: the material does not know time
+  std::optional<double> rate;        // 1/s; none: the material does not know time
   std::vector<PieceState> loading;   // from the virgin state on, `steps` more
   std::vector<PieceState> unloading; // after the last of these
   std::string end;                   // why it was not pulled as far as wanted; empty: it was
@@ -32,6 +32,8 @@ struct Curve {
 Curve follow(const solver::material::Law& law, const Ratio& ratio, const Options& options, std::optional<double> rate);
 
 // The axis whose strain drives: that of the larger stress.
-inline int driven_axis(const Ratio& ratio) { return std::abs(ratio.b) > std::abs(ratio.a) ? 1 : 0; }
+inline int driven_axis(const Ratio& ratio) {
+  return std::abs(ratio.b) > std::abs(ratio.a) ? 1 : 0;
+}
 
 } // namespace pneuma::stages::material

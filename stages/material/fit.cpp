@@ -61,7 +61,7 @@ std::string yaml_of(const FittedLaw& fitted, const std::string& name, const std:
     softens = softens || branch.modulus < 0;
   }
   return fmt::format("{}:\n  law: j2\n  E: {}\n  nu: {:.9g}\n  hardening: [{}]\n  modulus: plastic\n  strain: {}\n{}"
-                     "  source: \"{}\"\n",
+                     "  source: \"{}\"",
                      name, megapascal(fitted.hardening.youngs_modulus), fitted.poissons_ratio, branches,
                      fitted.logarithmic ? "logarithmic" : "small", softens ? "  softening: true\n" : "", source);
 }

@@ -9,8 +9,8 @@ namespace pneuma::stages::material {
 // The part of a uniaxial curve up to its largest strain, without unloading; axis 1 or 2, whichever is pulled.
 std::vector<TestPoint> rising_part(const TestCurve& test);
 
-// The J2 law whose uniaxial curve is nearest to a test's in nominal stress, with this Poisson's ratio. Throws InputError
-// where the test cannot carry so many branches.
+// The J2 law whose uniaxial curve is nearest to a test's in nominal stress, with this Poisson's ratio. Throws
+// InputError where the test cannot carry so many branches.
 struct FittedLaw {
   solver::material::HardeningFit hardening;
   double poissons_ratio = 0;

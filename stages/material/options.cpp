@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/material/options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -64,7 +65,7 @@ void set_ratios(Options& options, const std::string& text) {
   for (const std::string& one : parts(text)) {
     const std::size_t colon = one.find(':');
     const auto a = parse_number(one.substr(0, colon));
-    const auto b = colon == std::string::npos ? std::nullopt : parse_number(one.substr(colon + 1));
+    const auto b = parse_number(colon == std::string::npos ? std::string() : one.substr(colon + 1));
     if (!a || !b || (*a == 0 && *b == 0)) {
       throw InputError(fmt::format("--ratios: `{}` is no ratio of stresses such as 1:0 (uniaxial), 1:1 or 2:1", one));
     }
@@ -99,7 +100,7 @@ const std::vector<Switch>& switches() {
       {"--temperature", true, set_temperature},
       {"--angle", true, set_angle},
       {"--true", false, [](Options& o, const std::string&) { o.true_measures = true; }},
-      {"--data", true, [](Options& o, const std::string& v) { o.data = v; }},
+      {"--data", true, [](Options& o, const std::string& v) { o.data.push_back(v); }},
       {"--csv", true, [](Options& o, const std::string& v) { o.csv = v; }},
       {"--svg", true, [](Options& o, const std::string& v) { o.svg = v; }},
       {"--fit", true, [](Options& o, const std::string& v) { o.branches = whole("--fit", v, 1, 8); }},
@@ -133,7 +134,7 @@ const char* usage() {
          "  --angle A            from the warp direction to the first axis [0 deg]\n"
          "  --true               logarithmic strain and Cauchy stress [engineering strain and nominal stress]\n"
          "  --steps N            of loading [100]\n"
-         "  --data FILE.csv      test data to compare with: the misfit, and marks in the picture\n"
+         "  --data FILE.csv      data of a test to compare with: the misfit, and marks in the picture; again for more\n"
          "  --csv FILE.csv       write all points of the curves\n"
          "  --svg FILE.svg       draw the curves\n"
          "  --fit N              the N hardening branches nearest to the uniaxial test data, or to the curve itself\n"
@@ -159,8 +160,11 @@ Options parse(int argc, char** argv) {
     found.set(options, words[i]);
   }
   if (options.materials.empty()) throw InputError(fmt::format("no file of materials is given\n{}", usage()));
-  if (!options.csv.empty() && options.csv == options.data) {
+  if (!options.csv.empty() && std::find(options.data.begin(), options.data.end(), options.csv) != options.data.end()) {
     throw InputError(fmt::format("--csv: `{}` holds the test data", options.csv.string()));
+  }
+  if (options.true_measures && !options.data.empty()) {
+    throw InputError("--true: tests are in engineering strain and nominal stress; leave --data out, or --true");
   }
   if (!options.svg.empty() && options.svg.extension() != ".svg") {
     throw InputError(fmt::format("--svg: `{}` does not end in .svg", options.svg.string()));

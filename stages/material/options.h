@@ -19,13 +19,14 @@ struct Options {
   std::filesystem::path materials;
   std::vector<std::string> names; // none: all in the file
   std::vector<Ratio> ratios = {{1, 0}, {1, 1}, {2, 1}};
-  double strain = 0.1;       // to which the pieces are pulled, engineering or logarithmic
-  int steps = 100;           // of loading
-  std::vector<double> rates; // of that strain, 1/s
+  double strain = 0.1;               // to which the pieces are pulled, engineering or logarithmic
+  int steps = 100;                   // of loading
+  std::vector<double> rates;         // of that strain, 1/s
   std::optional<double> temperature; // K
   double angle = 0;                  // from the warp direction to axis 1, rad
   bool true_measures = false;        // logarithmic strain and Cauchy stress
-  std::filesystem::path data, csv, svg;
+  std::vector<std::filesystem::path> data;
+  std::filesystem::path csv, svg;
   int branches = 0; // to be fitted; 0: none
   bool softening = false;
 };

@@ -79,7 +79,7 @@ std::string table(std::span<const Curve> curves, const Options& options) {
     }
     text += fmt::format("{:>{}}", left, width);
   }
-  return text + "   strain after unloading\n";
+  return text + "   strain after unloading";
 }
 
 void write_csv(std::span<const Curve> curves, const Options& options) {
@@ -92,8 +92,9 @@ void write_csv(std::span<const Curve> curves, const Options& options) {
     for (const auto* part : {&curve.loading, &curve.unloading}) {
       for (const PieceState& state : *part) {
         const Shown at = shown(state, options.true_measures);
-        fmt::format_to(std::back_inserter(text), "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n",
-                       curve.material, name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
+        fmt::format_to(std::back_inserter(text),
+                       "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n", curve.material,
+                       name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
                        part == &curve.loading ? "loading" : "unloading", state.time, at.strain[0], at.strain[1],
                        at.stress[0] / 1e6, at.stress[1] / 1e6, state.thickness_stretch, state.energy / 1e6);
       }
@@ -134,11 +135,14 @@ void write_svg(std::span<const Curve> curves, std::span<const TestCurve> tests, 
                             families.size() > 1 ? strokes[ratio % 3] : drawing::Stroke::solid, drawing::Mark::none,
                             1 + (families.size() > 1 ? static_cast<int>(family) : ratio)});
   }
-  for (std::size_t i = 0; i < tests.size(); ++i) {
+  for (std::size_t i = 0; i < tests.size() && !options.true_measures; ++i) { // they are in the other measures
     const TestCurve& test = tests[i];
     const int axis = driven_axis(test.ratio);
     drawing::Curve curve{"test " + test.name, {}, drawing::Stroke::none, marks[i % 4], 0};
-    for (const TestPoint& point : test.points) {
+    constexpr std::size_t most = 40; // marks that can be told apart
+    const std::size_t every = 1 + (test.points.size() - 1) / most;
+    for (std::size_t k = 0; k < test.points.size(); k += every) {
+      const TestPoint& point = test.points[k];
       curve.points.emplace_back(100 * point.strain[axis], point.stress[axis] / 1e6);
     }
     chart.curves.push_back(std::move(curve));

@@ -13,7 +13,7 @@ std::string table(std::span<const Curve> curves, const Options& options);
 // All points of all curves; the columns of a file of test data among them. Throws StateError with the system's reason.
 void write_csv(std::span<const Curve> curves, const Options& options);
 
-// Along the driven axes, tests as marks. Throws like write_csv.
+// Along the driven axes, tests as marks, of long ones some. Throws like write_csv.
 void write_svg(std::span<const Curve> curves, std::span<const TestCurve> tests, const Options& options);
 
 } // namespace pneuma::stages::material
