@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,8 +35,10 @@ struct NurbsOptions {
   // Spans grow in proportion to the strain beyond this one and are equal below, in logarithmic strain. Default: of a
   // law the one that follows it best; of points none, equal spans in logarithmic strain.
   std::optional<double> knee;
-  bool potential = true;   // stresses from one potential
-  double smoothing = 1e-6; // geometry::nurbs::FitSettings
+  bool potential = true; // stresses from one potential
+  // Of geometry::nurbs::FitSettings. Default: 1e-7 through points alone, which leave cells open; of a law, which leaves
+  // none, 1e-10.
+  std::optional<double> smoothing;
 };
 
 // How a table follows what it was fitted to.
