@@ -298,7 +298,7 @@ TableLaw Builder::table_of(const Value& material) {
   law.fit_to = text_of(material, "fit_to");
   law.degree = static_cast<int>(number_of(material, "degree", law.degree));
   law.goes_on = text_of(material, "outside") == "linear";
-  law.smoothing = number_of(material, "smoothing", law.smoothing);
+  law.smoothing = optional_number(material, "smoothing");
   law.nu = number_of(material, "nu", law.nu);
   if (const Value* potential = material["potential"]) law.potential = potential->flag;
   if (const Value* net = material["net"]) {

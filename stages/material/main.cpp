@@ -8,7 +8,7 @@
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
 #include "pipeline/schema/spelling.h"
-#include "stages/common/equilibrium.h"
+#include "stages/common/law.h"
 #include "stages/material/fit.h"
 #include "stages/material/report.h"
 
@@ -21,7 +21,7 @@ using base::say;
 
 constexpr double standard_rate = 1e-3; // 1/s, of quasi-static tests
 
-std::vector<workflow::Material> read_materials(const Options& options) {
+workflow::MaterialsResult read_materials(const Options& options) {
   workflow::MaterialsResult result = workflow::read_materials(options.materials, options.names);
   std::vector<std::string> errors;
   for (const workflow::Problem& problem : result.problems) {
@@ -38,7 +38,7 @@ std::vector<workflow::Material> read_materials(const Options& options) {
                                  pipeline::schema::joined(result.names)));
   }
   if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
-  return std::move(result.materials);
+  return result;
 }
 
 // The curve of a material as if a machine had measured it.
@@ -66,15 +66,19 @@ void say_misfit(const Misfit& misfit, const TestCurve& test) {
 // The materials one after another, and what is written of all of them.
 class Bench {
 public:
-  Bench(const Options& options, const std::vector<TestCurve>& tests)
-      : options_(options), tests_(tests), drawn_tests_(tests) {}
+  Bench(const Options& options, const std::map<std::string, workflow::Material>& materials,
+        const std::vector<TestCurve>& tests)
+      : options_(options), materials_(materials), tests_(tests), drawn_tests_(tests) {}
 
   void show(const workflow::Material& material) {
-    workflow::Material taut = material;
-    taut.tension_field = false;
+    std::map<std::string, workflow::Material> taut = materials_;
+    taut.at(material.name).tension_field = false;
     say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
     if (material.tension_field) say("  its tension field changes nothing in tension and is left out");
-    show(material.name, common::law_of(taut));
+    const common::MaterialLaw made =
+        common::law_of(taut, material.name, options_.temperature.value_or(workflow::Site().temperature));
+    common::say_fit(material.name, made);
+    show(material.name, made.law);
   }
 
   void show_fit(const workflow::Material& material) {
@@ -148,6 +152,7 @@ private:
   }
 
   const Options& options_;
+  const std::map<std::string, workflow::Material>& materials_;
   const std::vector<TestCurve>& tests_;
   std::vector<Curve> curves_;
   std::vector<TestCurve> drawn_tests_;
@@ -162,13 +167,14 @@ int run(int argc, char** argv) {
     }
   }
   const Options options = parse(argc, argv);
-  const std::vector<workflow::Material> materials = read_materials(options);
+  const workflow::MaterialsResult read = read_materials(options);
+  const std::vector<workflow::Material>& materials = read.materials;
   std::vector<TestCurve> tests;
   for (const std::filesystem::path& file : options.data) tests.push_back(read_test(file));
   if (options.branches > 0 && materials.size() != 1) {
     throw base::InputError(fmt::format("--fit fits one material; name one of the {}", materials.size()));
   }
-  Bench bench(options, tests);
+  Bench bench(options, read.known, tests);
   for (const workflow::Material& material : materials) bench.show(material);
   if (options.branches > 0) bench.show_fit(materials.front());
   bench.write();
