@@ -31,8 +31,8 @@ void check(const NurbsOptions& options) {
                     nurbs::max_degree - 1, options.degree));
   }
   for (const int n : options.net) {
-    if (n <= options.degree || n > 400) {
-      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 400 control points a side, not {}",
+    if (n <= options.degree || n > 200) {
+      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 200 control points a side, not {}",
                                               options.degree, options.degree + 1, n));
     }
   }
@@ -180,6 +180,14 @@ void check_isotropic(const Law& law, StrainRange range, double time) {
   }
 }
 
+// Knees to choose from: parts of the largest logarithmic strain, and none.
+std::vector<std::optional<double>> knees(StrainRange range) {
+  const double largest = std::max(-logarithmic(range.min), logarithmic(range.max));
+  std::vector<std::optional<double>> result = {std::nullopt};
+  for (const double part : {0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) result.emplace_back(part * largest);
+  return result;
+}
+
 // The knee with which linear interpolation between the breaks follows a law best, along lines through its range; the
 // errors of stresses beyond the median count relative to them.
 std::optional<double> best_knee(const Law& law, StrainRange range, int spans, double time) {
@@ -191,8 +199,7 @@ std::optional<double> best_knee(const Law& law, StrainRange range, int spans, do
   const double usual = median(std::move(sizes));
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
-  for (const double part : {0.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
-    const std::optional<double> knee = part > 0 ? std::optional(part * largest) : std::nullopt;
+  for (const std::optional<double>& knee : knees(range)) {
     const std::vector<double> ends = strain_breaks(range, spans, knee);
     double error = 0;
     Response left;
@@ -281,6 +288,9 @@ double sum_of_weights(const std::vector<nurbs::SurfaceObservation>& observations
 }
 
 void report_residuals(const nurbs::Residuals& residuals, const Observations& observations, FitReport& report) {
+  for (std::size_t i = observations.reported; i < observations.list.size(); ++i) {
+    report.max_from_fill = std::max(report.max_from_fill, std::abs(residuals.each[i]));
+  }
   double sum = 0;
   double weights = 0;
   for (std::size_t i = 0; i < observations.reported; ++i) {
@@ -337,6 +347,28 @@ double smallest_span(const std::vector<double>& breaks) {
   double smallest = breaks.back() - breaks.front();
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) smallest = std::min(smallest, breaks[i + 1] - breaks[i]);
   return smallest;
+}
+
+// The knee whose potential follows points best.
+std::optional<double> best_knee(std::span<const StressPoint> points, StrainRange range, bool symmetric,
+                                double smoothing, const NurbsOptions& options) {
+  const Observations observations = gradients(points, points.size());
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::optional<double>& knee : knees(range)) {
+    const auto knots = [&](int points_of_net) {
+      return nurbs::from_breaks(options.degree + 1, strain_breaks(range, points_of_net - options.degree, knee));
+    };
+    FitReport report;
+    report_residuals(
+        fit_potential(knots(options.net[0]), knots(options.net[1]), observations, symmetric, smoothing).residuals,
+        observations, report);
+    if (report.rms < 0.98 * least) {
+      least = report.rms;
+      best = knee;
+    }
+  }
+  return best;
 }
 
 PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
@@ -538,8 +570,10 @@ void check_pd(std::span<const StressPoint> points, const NurbsOptions& options) 
 
 PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
   check_pd(points, options);
-  return pd_fit(points, points.size(), range_of(points, options.range), options.knee,
-                options.smoothing.value_or(smoothing_of_points), options);
+  const StrainRange range = range_of(points, options.range);
+  const double smoothing = options.smoothing.value_or(smoothing_of_points);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, true, smoothing, options);
+  return pd_fit(points, points.size(), range, knee, smoothing, options);
 }
 
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points,
@@ -565,8 +599,10 @@ LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoi
                    const NurbsOptions& options) {
   check(options);
   for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
-  return le_fit(points, shear, range_of(points, options.range), options.knee,
-                options.smoothing.value_or(smoothing_of_points), options);
+  const StrainRange range = range_of(points, options.range);
+  const double smoothing = options.smoothing.value_or(smoothing_of_points);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, false, smoothing, options);
+  return le_fit(points, shear, range, knee, smoothing, options);
 }
 
 LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {

@@ -40,6 +40,9 @@ struct PdNurbs {
       double unused = 0;
       const double mean = 0.5 * (strain[0] + strain[1]);
       f.quotient = (2 * turning(principal_stress(mean, mean, unused)) + turning(f)) / 3;
+      const double mean_stress = 0.5 * (f.s1 + f.s2);
+      f.s1 = mean_stress + 0.5 * f.quotient * e.difference;
+      f.s2 = mean_stress - 0.5 * f.quotient * e.difference;
     }
     in_frame(e, f, response.stress, response.tangent);
     return Status::ok;

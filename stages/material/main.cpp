@@ -74,9 +74,11 @@ public:
     std::map<std::string, workflow::Material> taut = materials_;
     taut.at(material.name).tension_field = false;
     say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
+    if (const auto range = workflow::temperatures_of(material); options_.temperature && !range) {
+      say("  does not depend on the temperature");
+    }
     if (material.tension_field) say("  its tension field changes nothing in tension and is left out");
-    const common::MaterialLaw made =
-        common::law_of(taut, material.name, options_.temperature.value_or(workflow::Site().temperature));
+    const common::MaterialLaw made = common::law_of(taut, material.name, temperature());
     common::say_fit(material.name, made);
     show(material.name, made.law);
   }
@@ -93,7 +95,7 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        material.law);
+        workflow::law_at(material, temperature()));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::string name = fmt::format("{}_{}", material.name, options_.branches);
     say(fmt::format("{}: the {} hardening branches nearest to {}, nu and kind of strain as of {}", name,
@@ -135,6 +137,8 @@ private:
       for (const std::optional<double>& rate : rates) say_misfit(misfit(law, test, options_, rate), test);
     }
   }
+
+  double temperature() const { return options_.temperature.value_or(workflow::Site().temperature); }
 
   // What is to be fitted: the uniaxial test, or the material's own curve.
   TestCurve uniaxial_test(const std::string& name) const {
