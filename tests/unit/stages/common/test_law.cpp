@@ -184,11 +184,12 @@ TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
 }
 
 TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
-  const workflow::MaterialsResult library =
+  workflow::MaterialsResult library =
       workflow::read_materials(std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml", {});
   for (const workflow::Problem& problem : library.problems) ADD_FAILURE() << to_string(problem);
   EXPECT_EQ(library.materials.size(), library.names.size());
   for (const Material& material : library.materials) {
+    library.known.at(material.name).tension_field = false; // uniaxial stress is at its border
     const MaterialLaw made = law_of(library.known, material.name, room);
     EXPECT_THAT(material.source, HasSubstr(":")) << material.name << ": a mark, then the source";
     EXPECT_EQ(material.density, 1750) << material.name;
