@@ -10,6 +10,8 @@
 #include "solver/material/le_nurbs.h"
 #include "solver/material/logarithmic.h"
 #include "solver/material/mooney_rivlin.h"
+#include "solver/material/ogden.h"
+#include "solver/material/orthotropic.h"
 #include "solver/material/pd_nurbs.h"
 #include "solver/material/st_venant_kirchhoff.h"
 #include "solver/material/tension_field.h"
@@ -17,12 +19,14 @@
 namespace pneuma::solver::material {
 
 static_assert(Material<TensionField<StVenantKirchhoff>> && Material<TensionField<MooneyRivlin>>);
+static_assert(Material<TensionField<Orthotropic>> && Material<TensionField<Ogden>>);
 static_assert(Material<TensionField<J2>> && Material<TensionField<Logarithmic>>);
 static_assert(Material<TensionField<PdNurbs>> && Material<TensionField<LeNurbs>>);
 
-using Law = std::variant<StVenantKirchhoff, MooneyRivlin, J2, Logarithmic, PdNurbs, LeNurbs,
-                         TensionField<StVenantKirchhoff>, TensionField<MooneyRivlin>, TensionField<J2>,
-                         TensionField<Logarithmic>, TensionField<PdNurbs>, TensionField<LeNurbs>>;
+using Law = std::variant<StVenantKirchhoff, Orthotropic, MooneyRivlin, Ogden, J2, Logarithmic, PdNurbs, LeNurbs,
+                         TensionField<StVenantKirchhoff>, TensionField<Orthotropic>, TensionField<MooneyRivlin>,
+                         TensionField<Ogden>, TensionField<J2>, TensionField<Logarithmic>, TensionField<PdNurbs>,
+                         TensionField<LeNurbs>>;
 
 std::span<const std::string_view> history_names(const Law& law);
 int history_components(const Law& law); // doubles a point

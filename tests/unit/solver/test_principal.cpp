@@ -135,6 +135,28 @@ TEST(LogStrain, OfSmallStrainsIsTheStrainToTheLastDigit) {
   EXPECT_LT((log_of(strain).strain - (strain - squares)).cwiseAbs().maxCoeff(), 1e-24);
 }
 
+TEST(LogStrain, CarriesHenckysElasticity) {
+  // T = D e: S = slope^T T, tangent slope^T D slope + curvature(T), against the law that has it in closed form
+  const Elasticity elasticity{1100e6, 0.43};
+  const Mat3 D = StVenantKirchhoff{1100e6, 0.43}.stiffness();
+  const Logarithmic law{elasticity, {}};
+  for_stretches([&](double a, double b, double angle) {
+    if (std::min(a, b) < 0.5 || std::max(a, b) > 3) return;
+    const Vec3 strain = strain_of(a, b, angle);
+    const LogStrain log = log_of(strain);
+    const Vec3 T = D * log.strain;
+    const std::array<double, 5> old_history{};
+    std::array<double, 5> history{};
+    Response at;
+    ASSERT_EQ(law.evaluate(strain, old_history.data(), history.data(), 0, at), Status::ok);
+    const double rounding = 2e-14; // the strain's by slopes up to 1 / 0.5^2 and the tangent's up to that squared
+    EXPECT_LT((log.slope.transpose() * T - at.stress).cwiseAbs().maxCoeff(), rounding * 1100e6);
+    const Mat3 tangent = log.slope.transpose() * D * log.slope + log.curvature(T);
+    EXPECT_LT(relative_difference(tangent, at.tangent), rounding);
+    EXPECT_NEAR(0.5 * T.dot(log.strain), at.energy, rounding * 1100e6);
+  });
+}
+
 TEST(LogStrain, RefusesAStrainWithoutArea) {
   LogStrain log;
   for (const Vec3& strain : {Vec3(-0.5, 0, 0), Vec3(0, 0, 1.1), Vec3(std::nan(""), 0, 0)}) {
