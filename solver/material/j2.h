@@ -27,15 +27,15 @@ struct J2 {
   Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
                   Response& response) const noexcept {
     const Vec3 elastic = strain - stress_free_strain(old_history);
-    if (!elastic.allFinite()) return Status::failed;
     const double two_g = 2 * elasticity.shear_modulus();
     double sum = elasticity.sum_modulus() * (elastic[0] + elastic[1]);
     double difference = two_g * (elastic[0] - elastic[1]);
     double shear = 0.5 * two_g * elastic[2];
     const double alpha = old_history[3];
     const double dissipated = old_history[4];
-    const PlasticStep step =
-        plane_stress_return(elasticity, flow, sum, difference * difference + 4 * shear * shear, alpha, dt);
+    const double difference_squared = difference * difference + 4 * shear * shear;
+    if (!std::isfinite(sum * sum + difference_squared)) return Status::failed;
+    const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference_squared, alpha, dt);
     sum *= step.sum;
     difference *= step.difference;
     shear *= step.difference;
