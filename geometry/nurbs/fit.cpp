@@ -182,7 +182,8 @@ CurveFit fit(const Knots& knots, std::span<const CurveObservation> observations,
       for (std::size_t k = 0; k < gauss_points.size(); ++k) {
         form_of(ends[i] + gauss_points[k] * size, settings.penalized);
         normal.add(static_cast<std::size_t>(basis.first), form, 0,
-                   settings.smoothing * gauss_weights[k] * std::pow(size, 2 * settings.penalized));
+                   settings.smoothing * gauss_weights[k] *
+                       std::pow(size, 2 * (settings.penalized - (settings.of_gradient ? 1 : 0))));
       }
     }
   }
@@ -272,22 +273,31 @@ SurfaceFit fit(const Knots& u, const Knots& v, std::span<const SurfaceObservatio
   }
   if (settings.smoothing > 0) {
     check_determined(seen, "the surface");
-    const int order = settings.penalized;
     for (std::size_t i = 0; i + 1 < ends_u.size(); ++i) {
       const double size_u = ends_u[i + 1] - ends_u[i];
       for (std::size_t j = 0; j < cells_v; ++j) {
         const double size_v = ends_v[j + 1] - ends_v[j];
         for (std::size_t k = 0; k < gauss_points.size(); ++k) {
-          evaluate_basis(u, ends_u[i] + gauss_points[k] * size_u, order, in_u);
+          evaluate_basis(u, ends_u[i] + gauss_points[k] * size_u, settings.penalized, in_u);
           for (std::size_t l = 0; l < gauss_points.size(); ++l) {
-            evaluate_basis(v, ends_v[j] + gauss_points[l] * size_v, order, in_v);
-            double binomial = 1;
-            for (int a = 0; a <= order; ++a) {
-              form_of(a, order - a);
-              normal.add(cell(), form, 0,
-                         binomial * settings.smoothing * gauss_weights[k] * gauss_weights[l] * std::pow(size_u, 2 * a) *
-                             std::pow(size_v, 2 * (order - a)));
-              binomial *= static_cast<double>(order - a) / (a + 1);
+            evaluate_basis(v, ends_v[j] + gauss_points[l] * size_v, settings.penalized, in_v);
+            // the norm of all derivatives of f, or of both its first ones
+            const auto penalise = [&](int first_u, int first_v) {
+              const int order = settings.penalized - first_u - first_v;
+              double binomial = 1;
+              for (int a = 0; a <= order; ++a) {
+                form_of(a + first_u, order - a + first_v);
+                normal.add(cell(), form, 0,
+                           binomial * settings.smoothing * gauss_weights[k] * gauss_weights[l] *
+                               std::pow(size_u, 2 * a) * std::pow(size_v, 2 * (order - a)));
+                binomial *= static_cast<double>(order - a) / (a + 1);
+              }
+            };
+            if (settings.of_gradient) {
+              penalise(1, 0);
+              penalise(0, 1);
+            } else {
+              penalise(0, 0);
             }
           }
         }

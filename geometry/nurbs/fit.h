@@ -25,10 +25,13 @@ struct SurfaceObservation {
 
 struct FitSettings {
   // Weight of a penalty on all derivatives of order `penalized` (1 to 3), each times the size of its span to that
-  // power, against observations of one per span: 1e-6 bends a fitted curve by a millionth of what one span bends, and
+  // power, against observations of one per span: 1e-7 moves a fitted curve by 1e-7 of what it bends over a span, and
   // lets spans without observations continue their neighbours as the polynomial of the order below. 0: none.
-  double smoothing = 1e-6;
+  double smoothing = 1e-7;
   int penalized = 2;
+  // The observations are first derivatives: the penalty, too, is on derivatives of these, of one order less, with as
+  // many powers of the size.
+  bool of_gradient = false;
   bool symmetric = false; // surfaces: f(u, v) = f(v, u), with equal knots
 };
 

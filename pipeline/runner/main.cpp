@@ -93,7 +93,8 @@ int body(int argc, char** argv) {
   if (!words.empty()) check_word(words.front());
 
   CLI::App app("From form to wind for ETFE cushions: runs the stages of a workflow file.", "pneuma");
-  app.footer("A workflow file as first word means `run`. Also: pneuma picture STATE --field F --out P.png.");
+  app.footer("A workflow file as first word means `run`. Also: pneuma picture STATE --field F --out P.png, pneuma "
+             "material M.yaml.");
   app.set_version_flag("--version", "pneuma " PNEUMA_VERSION);
   app.require_subcommand(1);
 

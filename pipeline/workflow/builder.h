@@ -33,7 +33,8 @@ public:
   std::vector<Problem> problems;
 
   Workflow build(const schema::Node& tree);
-  Workflow build_materials(); // of a file of materials alone
+  // Of a file of materials alone: those of these names, or all.
+  MaterialsResult build_materials(const std::vector<std::string>& names);
 
 private:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
@@ -43,8 +44,6 @@ private:
 
   // builder_cushion.cpp
   void read_site(const Value& site);
-  // In the user's file places are relative to the folder of the workflow file.
-  void make_origins_relative();
   void read_cushion(const Value& cushion);
   void read_plan(const Value& plan);
   void read_edges(const Value& edges);
@@ -81,8 +80,8 @@ private:
   // temperature; drops what no foil uses.
   void finish_materials();
   void check_fits();
-  // Materials that foils use and those that these are fitted to.
-  std::set<std::string> used_materials() const;
+  // These materials and those that they are fitted to.
+  std::set<std::string> with_fits(const std::vector<std::string>& names) const;
   void read_points(const std::string& name);
   void check_temperature(const Material& material);
 

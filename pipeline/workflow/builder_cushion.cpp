@@ -66,13 +66,12 @@ Workflow Builder::build(const Node& tree) {
   if (const Value* mesh = root.find("mesh")) add_mesh(*mesh);
   if (const Value* stages = root.find("stages")) read_stages(*stages);
   check_gravity();
-  make_origins_relative();
+  if (!is_stage_file_) {
+    for (auto& [path, mark] : workflow_.origins) {
+      mark.file = folder_relative(mark.file, workflow_.file.parent_path());
+    }
+  }
   return std::move(workflow_);
-}
-
-void Builder::make_origins_relative() {
-  if (is_stage_file_) return;
-  for (auto& [path, mark] : workflow_.origins) mark.file = folder_relative(mark.file, workflow_.file.parent_path());
 }
 
 void Builder::read_site(const Value& site) {

@@ -51,12 +51,20 @@ std::vector<std::string> files_of(const Value& data) {
 
 } // namespace
 
-Workflow Builder::build_materials() {
+MaterialsResult Builder::build_materials(const std::vector<std::string>& names) {
   read_materials_file(workflow_.file, {workflow_.file.generic_string(), 1, 1});
   check_fits();
-  for (const std::string& name : material_names_) read_points(name);
-  make_origins_relative();
-  return std::move(workflow_);
+  MaterialsResult result;
+  result.names = material_names_;
+  const std::vector<std::string>& asked = names.empty() ? material_names_ : names;
+  for (const std::string& name : with_fits(asked)) read_points(name);
+  for (const std::string& name : material_names_) {
+    const auto found = workflow_.materials.find(name);
+    const bool is_asked = std::find(asked.begin(), asked.end(), name) != asked.end();
+    if (is_asked && found != workflow_.materials.end()) result.materials.push_back(found->second);
+  }
+  result.known = std::move(workflow_.materials);
+  return result;
 }
 
 void Builder::read_materials(const Value& root) {
@@ -260,9 +268,17 @@ OgdenLaw Builder::ogden_of(const Value& terms) {
   OgdenLaw law;
   double twice_shear_modulus = 0;
   for (const Value& item : terms.items) {
-    const OgdenLaw::Term term{number_of(item, "mu"), number_of(item, "alpha")};
-    law.terms.push_back(term);
-    twice_shear_modulus += term.mu * term.alpha;
+    law.terms.push_back({number_of(item, "mu"), number_of(item, "alpha")});
+    twice_shear_modulus += law.terms.back().mu * law.terms.back().alpha;
+  }
+  if (twice_shear_modulus <= 0) {
+    fail(terms.mark, fmt::format("the shear modulus, half the sum of mu alpha, must be positive, not {:.4g} MPa",
+                                 twice_shear_modulus / 2e6));
+    return law;
+  }
+  for (std::size_t i = 0; i < law.terms.size(); ++i) {
+    const OgdenLaw::Term& term = law.terms[i];
+    const Value& item = terms.items[i];
     if (term.alpha == 0) {
       fail(item["alpha"]->mark, "`alpha` must not be 0: the term would have no meaning");
     } else if (term.mu == 0) {
@@ -273,10 +289,6 @@ OgdenLaw Builder::ogden_of(const Value& terms) {
                                   text_of(item, "mu"), term.alpha));
     }
   }
-  if (twice_shear_modulus <= 0) {
-    fail(terms.mark, fmt::format("the shear modulus, half the sum of mu alpha, must be positive, not {:.4g} MPa",
-                                 twice_shear_modulus / 2e6));
-  }
   return law;
 }
 
@@ -286,7 +298,7 @@ TableLaw Builder::table_of(const Value& material) {
   law.fit_to = text_of(material, "fit_to");
   law.degree = static_cast<int>(number_of(material, "degree", law.degree));
   law.goes_on = text_of(material, "outside") == "linear";
-  law.smoothing = number_of(material, "smoothing", law.smoothing);
+  law.smoothing = optional_number(material, "smoothing");
   law.nu = number_of(material, "nu", law.nu);
   if (const Value* potential = material["potential"]) law.potential = potential->flag;
   if (const Value* net = material["net"]) {
@@ -302,8 +314,10 @@ TableLaw Builder::table_of(const Value& material) {
     }
   }
   if (const Value* range = material["range"]) {
-    law.range = {range->items[0].number, range->items[1].number};
-    if (!((*law.range)[0] <= 0 && (*law.range)[1] > 0)) {
+    const double least = range->items[0].number, most = range->items[1].number;
+    if (least <= 0 && most > 0) {
+      law.range = {least, most};
+    } else {
       fail(range->mark, fmt::format("`range` must hold the strain 0, from which the foil starts, and end above it: "
                                     "[{}, {}] does not",
                                     range->items[0].text, range->items[1].text));
@@ -364,7 +378,9 @@ std::optional<Strength> Builder::strength_of(const Value& material) {
 
 void Builder::finish_materials() {
   check_fits();
-  const std::set<std::string> used = used_materials();
+  std::vector<std::string> of_foils;
+  for (const FoilSettings& foil : workflow_.cushion.foils) of_foils.push_back(foil.material);
+  const std::set<std::string> used = with_fits(of_foils);
   for (const std::string& name : used) {
     read_points(name);
     if (const auto found = workflow_.materials.find(name); found != workflow_.materials.end()) {
@@ -381,9 +397,10 @@ void Builder::check_fits() {
     return table != nullptr ? table->fit_to : std::string();
   };
   std::set<std::string> told; // in circles
-  for (const auto& [name, value] : tables_) {
+  for (const std::string& name : material_names_) {
     const std::string target = fit_to(name);
-    if (target.empty() || value["fit_to"] == nullptr) continue;
+    if (target.empty()) continue;
+    const Value& value = tables_.at(name);
     const Mark& mark = value["fit_to"]->mark;
     if (std::find(material_names_.begin(), material_names_.end(), target) == material_names_.end()) {
       fail(mark, fmt::format("there is no material `{}`{}; known: {}", target, suggestion(target, material_names_),
@@ -419,16 +436,16 @@ void Builder::check_fits() {
   }
 }
 
-std::set<std::string> Builder::used_materials() const {
-  std::set<std::string> used;
-  for (const FoilSettings& foil : workflow_.cushion.foils) {
-    for (std::string name = foil.material; !name.empty() && used.insert(name).second;) {
+std::set<std::string> Builder::with_fits(const std::vector<std::string>& names) const {
+  std::set<std::string> all;
+  for (const std::string& first : names) {
+    for (std::string name = first; !name.empty() && all.insert(name).second;) {
       const auto found = workflow_.materials.find(name);
       const auto* table = found != workflow_.materials.end() ? std::get_if<TableLaw>(&found->second.law) : nullptr;
       name = table != nullptr ? table->fit_to : "";
     }
   }
-  return used;
+  return all;
 }
 
 void Builder::read_points(const std::string& name) {

@@ -73,11 +73,9 @@ ReadResult read_workflow(const std::filesystem::path& file) {
   return result;
 }
 
-ReadResult read_materials(const std::filesystem::path& file) {
+MaterialsResult read_materials(const std::filesystem::path& file, const std::vector<std::string>& names) {
   Builder builder(file, false);
-  ReadResult result;
-  result.workflow = builder.build_materials();
-  result.workflow.file = file;
+  MaterialsResult result = builder.build_materials(names);
   result.problems = std::move(builder.problems);
   put_in_order(result.problems, file.generic_string());
   return result;

@@ -106,7 +106,7 @@ struct TableLaw {
   std::optional<std::array<double, 2>> range; // Green-Lagrange strain; none: that of the points
   bool goes_on = false;                       // linearly outside the data; otherwise an error
   bool potential = true;                      // stresses are derivatives of one potential
-  double smoothing = 1e-6;                    // weight of the second derivatives
+  std::optional<double> smoothing;            // weight of bends against residuals; none: as the fit chooses
   double nu = 0.5;                            // of the thickness, about which the points say nothing
 };
 
@@ -344,8 +344,17 @@ struct ReadResult {
 // Reads and checks a workflow file. Never throws for what the user wrote; every problem is in the result.
 ReadResult read_workflow(const std::filesystem::path& file);
 
-// Reads and checks a file of materials by itself: `workflow.materials` holds all of them, the rest is empty.
-ReadResult read_materials(const std::filesystem::path& file);
+// A file of materials on its own.
+struct MaterialsResult {
+  std::vector<Material> materials;       // those asked for, in the order of the file
+  std::vector<std::string> names;        // of all in the file
+  std::map<std::string, Material> known; // all without fault: what tables are fitted to is among them
+  std::vector<Problem> problems;
+};
+
+// Reads the materials of these names (none: all) from a file of materials, the test points of their tables too. A name
+// that is not in the file is not found, and no problem. Never throws for what the user wrote.
+MaterialsResult read_materials(const std::filesystem::path& file, const std::vector<std::string>& names);
 
 // Reads the stage.yaml that the runner wrote (or a user edited); marks of values point to the user's own file where
 // stage.yaml says where they came from. Throws InputError with all problems, a line each.

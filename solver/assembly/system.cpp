@@ -409,9 +409,16 @@ std::string System::why_failed(std::size_t foil, const Configuration& configurat
     middle += configuration.positions[static_cast<std::size_t>(node)] / static_cast<double>(nodes.size());
   }
   const Vec3& e = failed.strain;
-  return fmt::format("the material of foil `{}` has {} strain ({:.4g}, {:.4g}, {:.4g}) at ({:.4g}, {:.4g}, {:.4g}) m",
-                     block.name, failed.status == material::Status::outside_data ? "no data at" : "no state at", e[0],
-                     e[1], 0.5 * e[2], middle.x(), middle.y(), middle.z());
+  const std::string strain = fmt::format("({:.4g}, {:.4g}, {:.4g})", e[0], e[1], 0.5 * e[2]);
+  const std::string place = fmt::format("({:.4g}, {:.4g}, {:.4g}) m", middle.x(), middle.y(), middle.z());
+  if (failed.status != material::Status::outside_data) {
+    return fmt::format("the material of foil `{}` has no state at strain {} at {}", block.name, strain, place);
+  }
+  const material::StrainRange data =
+      material::data_range(model_.foils[static_cast<std::size_t>(equations.block)]->law).value();
+  return fmt::format(
+      "the material of foil `{}` has no data at strain {} at {}: its table lies within {:.4g} and {:.4g}", block.name,
+      strain, place, data.min, data.max);
 }
 
 void System::accept_history() {

@@ -58,7 +58,7 @@ struct J2 {
     new_history[1] += 0.25 * step.multiplier * (sum - 3 * difference);
     new_history[2] += 1.5 * step.multiplier * shear;
     new_history[3] = alpha + step.increment;
-    new_history[4] = dissipated + step.increment * step.equivalent_stress;
+    new_history[4] = dissipated + flow.dissipation(alpha, step.increment, step.equivalent_stress);
     return Status::ok;
   }
 

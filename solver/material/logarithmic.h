@@ -8,6 +8,7 @@
 
 #include "solver/material/concept.h"
 #include "solver/material/plane_stress_return.h"
+#include "solver/material/principal.h"
 
 namespace pneuma::solver::material {
 
@@ -17,10 +18,11 @@ namespace pneuma::solver::material {
 // Appl. Mech. Eng. 79; Eterovic and Bathe 1990; de Souza Neto, Peric and Owen 2008, sec. 14.4). With isotropy e of the
 // trial state Ce = Up^-1 C Up^-1 and T are coaxial: the return is that of small strains on the principal values,
 //   s_i = T_i / c_i, c_i and n_i principal of Ce, S = Up^-1 (s_1 n_1 n_1 + s_2 n_2 n_2) Up^-1,
-// and the tangent is exact and symmetric: with E_i = (c_i - 1) / 2 of Ce
-//   ds_i/dE_j = D_ij / (c_i c_j) - 2 delta_ij T_i / c_i^2,   ds_12 = (s_1 - s_2) / (E_1 - E_2) dE_12,
-// where the quotient is written with that of the logarithms, so that equal stretches lose no digits. Fails where
-// det C <= 0. History: plastic stretch Up - I (of Fp only Cp = Up Up matters), alpha, dissipated work.
+// and the tangent is exact and symmetric: with E_i = (c_i - 1) / 2
+//   ds_i/dE_j = D_ij / (c_i c_j) - 2 delta_ij T_i / c_i^2,
+//   (s_1 - s_2) / (E_1 - E_2) from (T_1 - T_2) / (e_1 - e_2) = 2 G, less what has flowed, and that of the logarithms,
+// so that equal stretches lose no digits. Fails where det C <= 0. History: plastic stretch Up - I (of Fp only Cp =
+// Up Up matters), alpha, dissipated work.
 struct Logarithmic {
   static constexpr std::array<std::string_view, 5> history_names = {"plastic_stretch_11", "plastic_stretch_22",
                                                                     "plastic_stretch_12", equivalent_plastic_strain,
@@ -33,51 +35,20 @@ struct Logarithmic {
 
   Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
                   Response& response) const noexcept {
-    const Stretch up{old_history[0], old_history[1], old_history[2]};
+    const Symmetric up(old_history[0], old_history[1], old_history[2]);
     const double alpha = old_history[3];
     const double dissipated = old_history[4];
-    // Ee = (Ce - I) / 2 = V E V + (V V - I) / 2 with V = Up^-1
-    const Stretch v = inverse(up);
-    const double v11 = 1 + v.x11;
-    const double v22 = 1 + v.x22;
-    const double v12 = v.x12;
-    const double e12 = 0.5 * strain[2];
-    const double l11 = v11 * strain[0] + v12 * e12; // V E
-    const double l12 = v11 * e12 + v12 * strain[1];
-    const double l21 = v12 * strain[0] + v22 * e12;
-    const double l22 = v12 * e12 + v22 * strain[1];
-    const double trial11 = l11 * v11 + l12 * v12 + v.x11 + 0.5 * (v.x11 * v.x11 + v12 * v12);
-    const double trial22 = l21 * v12 + l22 * v22 + v.x22 + 0.5 * (v.x22 * v.x22 + v12 * v12);
-    const double trial12 = l11 * v12 + l12 * v22 + v12 * (1 + 0.5 * (v.x11 + v.x22));
-
-    // its principal values E_1 >= E_2, the first along (c, s), and those of e
-    const double half = 0.5 * (trial11 - trial22);
-    const double radius = std::sqrt(half * half + trial12 * trial12);
-    const double smaller = 0.5 * (trial11 + trial22) - radius;
-    const double c2 = 1 + 2 * smaller;
-    const double c1 = c2 + 4 * radius;
-    if (!(c2 > 0 && c1 < std::numeric_limits<double>::infinity())) return Status::failed;
-    double c = 1;
-    double s = 0;
-    double e_difference = 0;
-    double quotient = 1 / c2;        // (e_1 - e_2) / (E_1 - E_2)
-    constexpr double equal = 1e-140; // the squares below lose digits to underflow
-    if (radius > equal) {
-      c = std::sqrt(0.5 + 0.5 * std::abs(half) / radius);
-      s = 0.5 * trial12 / (radius * c);
-      if (half < 0) std::swap(c, s);
-      e_difference = 0.5 * std::log1p(4 * radius / c2);
-      quotient = e_difference / (2 * radius);
-    }
+    const Symmetric v = inverse(up); // Up^-1 - I
+    PrincipalStrain trial = principal_strain(pulled_back(strain, v));
+    const PrincipalLogarithm log = principal_logarithm(trial);
+    if (!(log.c2 > 0) || !std::isfinite(log.c1)) return Status::failed;
 
     const double two_g = 2 * elasticity.shear_modulus();
-    double sum = elasticity.sum_modulus() * (std::log1p(2 * smaller) + e_difference); // T_1 + T_2
-    double difference = two_g * e_difference;
+    double sum = elasticity.sum_modulus() * (2 * log.second + log.difference); // T_1 + T_2
+    double difference = two_g * log.difference;
     const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference * difference, alpha, dt);
     sum *= step.sum;
     difference *= step.difference;
-    const double T1 = 0.5 * (sum + difference);
-    const double T2 = 0.5 * (sum - difference);
     const double xi_sum = elasticity.sum_modulus() * step.sum;
     const double xi_difference = two_g * step.difference;
     double D11 = 0.5 * (xi_sum + xi_difference);
@@ -93,39 +64,30 @@ struct Logarithmic {
       D12 -= step.softening * w1 * w2;
       D22 -= step.softening * w2 * w2;
       response.potential += flow.potential(alpha, step.increment, step.time_ratio);
-      const Stretch grown = grow(up, std::expm1(0.25 * step.multiplier * (sum + 3 * difference)),
-                                 std::expm1(0.25 * step.multiplier * (sum - 3 * difference)), c, s);
-      new_history[0] = grown.x11;
-      new_history[1] = grown.x22;
-      new_history[2] = grown.x12;
+      const Symmetric grown = grow(up, std::expm1(0.25 * step.multiplier * (sum + 3 * difference)) * trial.along1 +
+                                           std::expm1(0.25 * step.multiplier * (sum - 3 * difference)) * trial.along2);
+      new_history[0] = grown[0];
+      new_history[1] = grown[1];
+      new_history[2] = grown[2];
       new_history[3] = alpha + step.increment;
-      new_history[4] = dissipated + step.increment * step.equivalent_stress;
+      new_history[4] = dissipated + flow.dissipation(alpha, step.increment, step.equivalent_stress);
     }
 
-    const double i1 = 1 / c1;
-    const double i2 = 1 / c2;
-    const double P11 = (D11 - 2 * T1) * i1 * i1;
-    const double P22 = (D22 - 2 * T2) * i2 * i2;
-    const double P12 = D12 * i1 * i2;
-    const double P33 = 0.25 * xi_difference * quotient * (i1 + i2) - 0.5 * sum * i1 * i2;
-    // y_i = V n_i carries a strain to the principal axes and the stress back
-    const double y11 = v11 * c + v12 * s;
-    const double y12 = v12 * c + v22 * s;
-    const double y21 = v12 * c - v11 * s;
-    const double y22 = v22 * c - v12 * s;
-    const Vec3 m1(y11 * y11, y12 * y12, y11 * y12);
-    const Vec3 m2(y21 * y21, y22 * y22, y21 * y22);
-    const Vec3 m3(2 * y11 * y21, 2 * y12 * y22, y11 * y22 + y12 * y21);
-    response.stress = T1 * i1 * m1 + T2 * i2 * m2;
-    for (int j = 0; j < 3; ++j) {
-      const double p1 = P11 * m1[j] + P12 * m2[j];
-      const double p2 = P12 * m1[j] + P22 * m2[j];
-      const double p3 = P33 * m3[j];
-      for (int i = j; i < 3; ++i) {
-        response.tangent(i, j) = m1[i] * p1 + m2[i] * p2 + m3[i] * p3;
-        response.tangent(j, i) = response.tangent(i, j);
-      }
-    }
+    const double T1 = 0.5 * (sum + difference);
+    const double T2 = 0.5 * (sum - difference);
+    const double i1 = 1 / log.c1;
+    const double i2 = 1 / log.c2;
+    PrincipalFunction s;
+    s.s1 = T1 * i1;
+    s.s2 = T2 * i2;
+    s.d11 = (D11 - 2 * T1) * i1 * i1;
+    s.d22 = (D22 - 2 * T2) * i2 * i2;
+    s.d12 = s.d21 = D12 * i1 * i2;
+    s.quotient = 0.5 * xi_difference * log.quotient * (i1 + i2) - sum * i1 * i2;
+    trial.along1 = pushed_forward(trial.along1, v);
+    trial.along2 = pushed_forward(trial.along2, v);
+    trial.shear = pushed_forward(trial.shear, v);
+    in_frame(trial, s, response.stress, response.tangent);
     return Status::ok;
   }
 
@@ -145,27 +107,38 @@ struct Logarithmic {
   }
 
 private:
-  // A symmetric stretch less the identity, so that small ones lose no digits.
-  struct Stretch {
-    double x11 = 0, x22 = 0, x12 = 0;
-  };
+  // Components (11, 22, 12); stretches less the identity, so that small ones lose no digits.
+  using Symmetric = Vec3;
 
-  // (I + X)^-1 = I - (X + det(X) I) / det(I + X)
-  static Stretch inverse(const Stretch& x) noexcept {
-    const double det = x.x11 * x.x22 - x.x12 * x.x12;
-    const double factor = -1 / (1 + x.x11 + x.x22 + det);
-    return {factor * (x.x11 + det), factor * (x.x22 + det), factor * x.x12};
+  // (I + X)^-1 - I = -(X + det(X) I) / det(I + X)
+  static Symmetric inverse(const Symmetric& x) noexcept {
+    const double det = x[0] * x[1] - x[2] * x[2];
+    const double factor = -1 / (1 + x[0] + x[1] + det);
+    return factor * Symmetric(x[0] + det, x[1] + det, x[2]);
   }
 
-  // Stretch of M = (I + p) (I + X), p = p1 n1 n1 + p2 n2 n2, n1 = (c, s): M less its rotation.
-  static Stretch grow(const Stretch& x, double p1, double p2, double c, double s) noexcept {
-    const double p11 = p1 * c * c + p2 * s * s;
-    const double p22 = p1 * s * s + p2 * c * c;
-    const double p12 = (p1 - p2) * c * s;
-    const double n11 = p11 + x.x11 + p11 * x.x11 + p12 * x.x12; // of M - I
-    const double n12 = p12 + x.x12 + p11 * x.x12 + p12 * x.x22;
-    const double n21 = p12 + x.x12 + p12 * x.x11 + p22 * x.x12;
-    const double n22 = p22 + x.x22 + p12 * x.x12 + p22 * x.x22;
+  // (I + V) n (I + V): a direction of Ce makes a strain of C's one of Ce and a stress of Ce's one of C
+  static Symmetric pushed_forward(const Symmetric& n, const Symmetric& v) noexcept {
+    const double a = 1 + v[0];
+    const double b = 1 + v[1];
+    const double d = v[2];
+    return {a * a * n[0] + 2 * a * d * n[2] + d * d * n[1], d * d * n[0] + 2 * b * d * n[2] + b * b * n[1],
+            a * d * n[0] + (a * b + d * d) * n[2] + b * d * n[1]};
+  }
+
+  // (Ce - I)/2 = (I + V) E (I + V) + V + V V / 2, with 2 x the shear like the strain
+  static Vec3 pulled_back(const Vec3& strain, const Symmetric& v) noexcept {
+    const Symmetric e = pushed_forward(Symmetric(strain[0], strain[1], 0.5 * strain[2]), v);
+    return {e[0] + v[0] + 0.5 * (v[0] * v[0] + v[2] * v[2]), e[1] + v[1] + 0.5 * (v[1] * v[1] + v[2] * v[2]),
+            2 * e[2] + v[2] * (2 + v[0] + v[1])};
+  }
+
+  // Stretch of M = (I + p) (I + X), which is M less its rotation.
+  static Symmetric grow(const Symmetric& x, const Symmetric& p) noexcept {
+    const double n11 = p[0] + x[0] + p[0] * x[0] + p[2] * x[2]; // of M - I
+    const double n12 = p[2] + x[2] + p[0] * x[2] + p[2] * x[1];
+    const double n21 = p[2] + x[2] + p[2] * x[0] + p[1] * x[2];
+    const double n22 = p[1] + x[1] + p[2] * x[2] + p[1] * x[1];
     const double size = std::hypot(2 + n11 + n22, n21 - n12);
     const double cosine = (2 + n11 + n22) / size;
     const double sine = (n21 - n12) / size;

@@ -17,6 +17,9 @@ using base::Vec2;
 
 namespace {
 
+constexpr double smoothing_of_points = 1e-7;
+constexpr double smoothing_of_law = 1e-10;
+
 double logarithmic(double strain) {
   return 0.5 * std::log1p(2 * strain);
 }
@@ -28,8 +31,8 @@ void check(const NurbsOptions& options) {
                     nurbs::max_degree - 1, options.degree));
   }
   for (const int n : options.net) {
-    if (n <= options.degree || n > 400) {
-      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 400 control points a side, not {}",
+    if (n <= options.degree || n > 200) {
+      throw std::invalid_argument(fmt::format("a net of degree {} has {} to 200 control points a side, not {}",
                                               options.degree, options.degree + 1, n));
     }
   }
@@ -177,6 +180,14 @@ void check_isotropic(const Law& law, StrainRange range, double time) {
   }
 }
 
+// Knees to choose from: parts of the largest logarithmic strain, and none.
+std::vector<std::optional<double>> knees(StrainRange range) {
+  const double largest = std::max(-logarithmic(range.min), logarithmic(range.max));
+  std::vector<std::optional<double>> result = {std::nullopt};
+  for (const double part : {0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) result.emplace_back(part * largest);
+  return result;
+}
+
 // The knee with which linear interpolation between the breaks follows a law best, along lines through its range; the
 // errors of stresses beyond the median count relative to them.
 std::optional<double> best_knee(const Law& law, StrainRange range, int spans, double time) {
@@ -188,8 +199,7 @@ std::optional<double> best_knee(const Law& law, StrainRange range, int spans, do
   const double usual = median(std::move(sizes));
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
-  for (const double part : {0.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
-    const std::optional<double> knee = part > 0 ? std::optional(part * largest) : std::nullopt;
+  for (const std::optional<double>& knee : knees(range)) {
     const std::vector<double> ends = strain_breaks(range, spans, knee);
     double error = 0;
     Response left;
@@ -278,6 +288,9 @@ double sum_of_weights(const std::vector<nurbs::SurfaceObservation>& observations
 }
 
 void report_residuals(const nurbs::Residuals& residuals, const Observations& observations, FitReport& report) {
+  for (std::size_t i = observations.reported; i < observations.list.size(); ++i) {
+    report.max_from_fill = std::max(report.max_from_fill, std::abs(residuals.each[i]));
+  }
   double sum = 0;
   double weights = 0;
   for (std::size_t i = 0; i < observations.reported; ++i) {
@@ -305,7 +318,7 @@ nurbs::SurfaceFit fit_potential(const nurbs::Knots& first, const nurbs::Knots& s
   all.push_back({0, 0, 0, 0, 0, sum / (size * size)}); // the constant, seen by nothing else
   all.push_back({0, 0, 1, 0, 0, sum});
   all.push_back({0, 0, 0, 1, 0, sum});
-  nurbs::SurfaceFit fit = nurbs::fit(first, second, all, {smoothing, 3, symmetric});
+  nurbs::SurfaceFit fit = nurbs::fit(first, second, all, {smoothing, 3, true, symmetric});
   // what is left of them, to rounding: control values at the Greville abscissae are a linear function
   for (int repeat = 0; repeat < 2; ++repeat) {
     const nurbs::SurfaceJet<1> zero = nurbs::evaluate(fit.surface, 0, 0);
@@ -324,7 +337,7 @@ nurbs::SurfaceFit fit_potential(const nurbs::Knots& first, const nurbs::Knots& s
 nurbs::SurfaceFit fit_stress(const nurbs::Knots& first, const nurbs::Knots& second,
                              std::vector<nurbs::SurfaceObservation> observations, double smoothing) {
   observations.push_back({0, 0, 0, 0, 0, sum_of_weights(observations)});
-  nurbs::SurfaceFit fit = nurbs::fit(first, second, observations, {smoothing, 2, false});
+  nurbs::SurfaceFit fit = nurbs::fit(first, second, observations, {smoothing, 2, false, false});
   const double left = nurbs::evaluate(fit.surface, 0, 0).value[0];
   for (nurbs::Point<1>& point : fit.surface.points) point[0] -= left;
   return fit;
@@ -336,14 +349,36 @@ double smallest_span(const std::vector<double>& breaks) {
   return smallest;
 }
 
+// The knee whose potential follows points best.
+std::optional<double> best_knee(std::span<const StressPoint> points, StrainRange range, bool symmetric,
+                                double smoothing, const NurbsOptions& options) {
+  const Observations observations = gradients(points, points.size());
+  std::optional<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::optional<double>& knee : knees(range)) {
+    const auto knots = [&](int points_of_net) {
+      return nurbs::from_breaks(options.degree + 1, strain_breaks(range, points_of_net - options.degree, knee));
+    };
+    FitReport report;
+    report_residuals(
+        fit_potential(knots(options.net[0]), knots(options.net[1]), observations, symmetric, smoothing).residuals,
+        observations, report);
+    if (report.rms < 0.98 * least) {
+      least = report.rms;
+      best = knee;
+    }
+  }
+  return best;
+}
+
 PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
-             const NurbsOptions& options) {
+             double smoothing, const NurbsOptions& options) {
   const std::vector<double> ends = strain_breaks(range, options.net[0] - options.degree, knee);
   const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
   auto table = std::make_shared<PdTable>();
   PdFit fit;
   Observations observations = gradients(points, reported);
-  nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, options.smoothing);
+  nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, smoothing);
   table->potential = std::move(potential.surface);
   table->domain = domain_of(points, range, true);
   // rounding of the difference against kinks of the second derivatives within it
@@ -362,7 +397,7 @@ PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRa
       o.order_u = o.order_v = 0;
     }
     const nurbs::Knots of_stress = nurbs::from_breaks(options.degree, ends);
-    nurbs::SurfaceFit stress = fit_stress(of_stress, of_stress, observations.list, options.smoothing);
+    nurbs::SurfaceFit stress = fit_stress(of_stress, of_stress, observations.list, smoothing);
     table->stress = std::move(stress.surface);
     report_residuals(stress.residuals, observations, fit.report);
     judge(
@@ -378,7 +413,7 @@ PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRa
 }
 
 LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> shear, StrainRange range,
-             std::optional<double> knee, const NurbsOptions& options) {
+             std::optional<double> knee, double smoothing, const NurbsOptions& options) {
   auto table = std::make_shared<LeTable>();
   LeFit fit;
   const std::vector<double> ends1 = strain_breaks(range, options.net[0] - options.degree, knee);
@@ -386,7 +421,7 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
   Observations observations = gradients(points, points.size());
   nurbs::SurfaceFit potential =
       fit_potential(nurbs::from_breaks(options.degree + 1, ends1), nurbs::from_breaks(options.degree + 1, ends2),
-                    observations, false, options.smoothing);
+                    observations, false, smoothing);
   table->potential = std::move(potential.surface);
   table->domain = domain_of(points, range, false);
   if (options.potential) {
@@ -405,8 +440,8 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
     for (const nurbs::SurfaceObservation& o : observations.list) {
       (o.order_u == 1 ? first : second).push_back({o.u, o.v, 0, 0, o.value, o.weight});
     }
-    nurbs::SurfaceFit s11 = fit_stress(knots1, knots2, std::move(first), options.smoothing);
-    nurbs::SurfaceFit s22 = fit_stress(knots1, knots2, std::move(second), options.smoothing);
+    nurbs::SurfaceFit s11 = fit_stress(knots1, knots2, std::move(first), smoothing);
+    nurbs::SurfaceFit s22 = fit_stress(knots1, knots2, std::move(second), smoothing);
     nurbs::Residuals residuals{0, 0, 0, {}, std::max(s11.residuals.uncovered, s22.residuals.uncovered)};
     std::size_t of_first = 0;
     std::size_t of_second = 0;
@@ -452,7 +487,7 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
     sum += 2 * point.weight;
   }
   slopes.push_back({0, 0, 0, sum / (largest * largest)});
-  nurbs::CurveFit curve = nurbs::fit(knots, slopes, {options.smoothing, 3, false});
+  nurbs::CurveFit curve = nurbs::fit(knots, slopes, {smoothing, 3, true, false});
   for (std::size_t i = 0, j = curve.curve.points.size() - 1; i < j; ++i, --j) { // even to rounding
     curve.curve.points[i] = curve.curve.points[j] = 0.5 * (curve.curve.points[i] + curve.curve.points[j]);
   }
@@ -535,7 +570,10 @@ void check_pd(std::span<const StressPoint> points, const NurbsOptions& options) 
 
 PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
   check_pd(points, options);
-  return pd_fit(points, points.size(), range_of(points, options.range), options.knee, options);
+  const StrainRange range = range_of(points, options.range);
+  const double smoothing = options.smoothing.value_or(smoothing_of_points);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, true, smoothing, options);
+  return pd_fit(points, points.size(), range, knee, smoothing, options);
 }
 
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points,
@@ -553,14 +591,18 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
     if (!points.empty()) point.weight *= fill;
     all.push_back(point);
   }
-  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee, options);
+  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee,
+                options.smoothing.value_or(smoothing_of_law), options);
 }
 
 LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear,
                    const NurbsOptions& options) {
   check(options);
   for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
-  return le_fit(points, shear, range_of(points, options.range), options.knee, options);
+  const StrainRange range = range_of(points, options.range);
+  const double smoothing = options.smoothing.value_or(smoothing_of_points);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, false, smoothing, options);
+  return le_fit(points, shear, range, knee, smoothing, options);
 }
 
 LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
@@ -585,7 +627,7 @@ LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
   if (shear.empty()) throw std::invalid_argument("the law to fit has no state in shear");
   const double usual = median(std::move(sizes));
   for (ShearPoint& point : shear) point.weight = weight_of(std::abs(point.s12), usual);
-  return le_fit(points, shear, range, knee, options);
+  return le_fit(points, shear, range, knee, options.smoothing.value_or(smoothing_of_law), options);
 }
 
 } // namespace pneuma::solver::material

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,16 +27,18 @@ struct ShearPoint {
 };
 
 struct NurbsOptions {
-  std::array<int, 2> net = {25, 25}; // control points of the stress surfaces; PD-NURBS: the same number twice
+  std::array<int, 2> net = {25, 25}; // control points of the stress surfaces, up to 200; PD-NURBS: the same twice
   int degree = 3;                    // of the stress surfaces, 2 to 6; a potential has one degree and one row more
   // Strains of the table, min <= 0 < max. Default: from the points, with a twentieth of the largest strain at least on
   // the side of compression; a law to fit needs it.
   std::optional<StrainRange> range;
-  // Spans grow in proportion to the strain beyond this one and are equal below, in logarithmic strain. Default: of a
-  // law the one that follows it best; of points none, equal spans in logarithmic strain.
+  // Spans grow in proportion to the strain beyond this one and are equal below, in logarithmic strain. Default: the one
+  // of several, or none, that follows the law or the points best.
   std::optional<double> knee;
-  bool potential = true;   // stresses from one potential
-  double smoothing = 1e-6; // geometry::nurbs::FitSettings
+  bool potential = true; // stresses from one potential
+  // Of geometry::nurbs::FitSettings. Default: 1e-7 through points alone, which leave cells open; of a law, which leaves
+  // none, 1e-10.
+  std::optional<double> smoothing;
 };
 
 // How a table follows what it was fitted to.
@@ -44,6 +47,7 @@ struct FitReport {
   double max = 0;                   // largest difference of a stress of points that have a weight, Pa
   base::Vec2 where = {0, 0};        // strains (E1, E2) of it
   double largest_stress = 0;        // of the same points, Pa
+  double max_from_fill = 0;         // largest difference from the law that fills what points leave open, Pa
   double uncovered = 0;             // part of the cells of the table that no point lies in
   bool monotone = true;             // the Kirchhoff stress (1 + 2 E1) S1 rises with E1 in all of the data, so does 22
   base::Vec2 not_monotone = {0, 0}; // where it rises least

@@ -122,8 +122,16 @@ struct Flow {
     return s;
   }
 
-  // int_0^increment of that stress: what an increment of alpha adds to the incremental potential, J/m3. By parts within
-  // each branch, with G1 and G2 the overstress ratio integrated once and twice: int s g = [s G1] - K [G2].
+  // Work of the flow stress while alpha grows at the step's rate, J/m3, `end` that stress at its end: sigma_eq times
+  // increment, as exact in hardening as a step without viscosity allows.
+  double dissipation(double alpha, double increment, double end) const noexcept {
+    const double shift = threshold_shift();
+    return shift * increment + (end - shift) / hardening.stress(alpha + increment) * hardening.work(alpha, increment);
+  }
+
+  // int_0^increment of `stress`, which sees the rate grow: what the increment adds to the incremental potential, J/m3.
+  // By parts within each branch, with G1 and G2 the overstress ratio integrated once and twice: int s g = [s G1] - K
+  // [G2].
   double potential(double alpha, double increment, double time_ratio) const noexcept {
     double sum = hardening.work(alpha, increment) + threshold_shift() * increment;
     if (!(time_ratio > 0)) return sum;

@@ -9,6 +9,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/volume.h"
+#include "solver/material/nurbs_fit.h"
 #include "tests/unit/finite_differences.h"
 #include "tests/unit/solver/cushions.h"
 
@@ -425,6 +426,25 @@ TEST(Newton, StabilityCountsNothingInATautCushionAndRefusesToCountUnsafely) {
   assembly::Configuration at = start_of(system.model());
   system.evaluate(at, true);
   EXPECT_FALSE(newton.tangent().stability(at, nullptr).load_held);
+}
+
+TEST(SystemOfTables, SaysWhereAndBetweenWhichStrainsATableEnds) {
+  Cushion cushion;
+  cushion.heights = {0.12};
+  cushion.base = true;
+  assembly::Model model = model_of(cushion, 300);
+  material::NurbsOptions options;
+  options.net = {8, 8};
+  options.range = material::StrainRange{-0.01, 0.02};
+  model.foils[0]->law = material::PdNurbs{material::fit_pd_nurbs(material::Law(cushion.law), options).table};
+  assembly::System system(std::move(model), 1);
+  assembly::Configuration at = start_of(system.model());
+  EXPECT_TRUE(system.evaluate(at, true).possible);
+  for (Vec3& x : at.positions) x.x() *= 1.05;
+  const assembly::Balance balance = system.evaluate(at, true);
+  EXPECT_FALSE(balance.possible);
+  EXPECT_NE(balance.reason.find("foil `foil 1` has no data at strain (0.0"), std::string::npos) << balance.reason;
+  EXPECT_NE(balance.reason.find("its table lies within -0.01 and 0.02"), std::string::npos) << balance.reason;
 }
 
 } // namespace

@@ -130,6 +130,7 @@ double reaction(const assembly::System& system, const std::vector<Index>& nodes,
 }
 
 PlainNewton plain_newton(assembly::System& system, assembly::Configuration& at, double enough, int most) {
+  linear::use_one_blas_thread(); // as the programs do
   path::Work work;
   path::Tangent tangent(system, work);
   PlainNewton result;
@@ -146,6 +147,17 @@ PlainNewton plain_newton(assembly::System& system, assembly::Configuration& at, 
     }
   }
   return result;
+}
+
+void predict(assembly::System& system, assembly::Configuration& at, double load_factor) {
+  path::Work work;
+  path::Tangent tangent(system, work);
+  system.evaluate_accepted(at, true);
+  ASSERT_TRUE(tangent.factorize(at, path::Tangent::Repair::indefinite));
+  const std::optional<path::Change> way = tangent.along(at);
+  ASSERT_TRUE(way);
+  at = path::moved(system, at, ((load_factor - at.load_factor) / way->load_factor) * *way);
+  at.load_factor = load_factor;
 }
 
 } // namespace pneuma::tests

@@ -39,12 +39,15 @@ void move_edge(solver::assembly::Model& model, const std::vector<Index>& edge, i
 double reaction(const solver::assembly::System& system, const std::vector<Index>& nodes, int component);
 
 // Newton's method without any help at the configuration's load factor: the norms of its displacements, m, until one is
-// below `enough` m or the norm or an element fails, `most` at most.
+// below `enough` m or an element fails, `most` at most.
 struct PlainNewton {
   bool converged = false;
   std::vector<double> norms;
 };
 PlainNewton plain_newton(solver::assembly::System& system, solver::assembly::Configuration& at, double enough,
                          int most);
+
+// Moves a state in equilibrium to a load factor along its tangent.
+void predict(solver::assembly::System& system, solver::assembly::Configuration& at, double load_factor);
 
 } // namespace pneuma::tests

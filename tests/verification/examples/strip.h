@@ -28,7 +28,8 @@ struct StripPoint {
   double force = 0;        // of the quarter, N
 };
 
-// The strip pulled in `parts` equal parts, each cut where it must; time passes evenly, `duration` s (0: none).
+// The strip pulled in `parts` equal parts, each cut where it must; time passes evenly, `duration` s (0: none), the
+// flow followed to the tolerance.
 struct PulledStrip {
   solver::assembly::System system;
   solver::path::Newton newton;
@@ -38,7 +39,7 @@ struct PulledStrip {
   int steps = 0;
 
   PulledStrip(const PerforatedSheet& sheet, const solver::material::Law& law, double displacement, int parts,
-              double duration = 0);
+              double duration = 0, double flow_tolerance = 1e-4);
   bool reached() const { return path.end == solver::path::PathEnd::reached; }
   int iterations() const { return newton.work().iterations; }
 };

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/material/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "pipeline/test_data/test_data.h"
+
+namespace pneuma::stages::material {
+
+namespace law = solver::material;
+
+namespace {
+
+// From the axis of the larger stress: the smaller one over it.
+Ratio ratio_of(const std::vector<TestPoint>& points) {
+  base::Mat2 products = base::Mat2::Zero();
+  for (const TestPoint& point : points) products += point.weight * point.stress * point.stress.transpose();
+  const int larger = products(1, 1) > products(0, 0) ? 1 : 0;
+  constexpr double none = 0.01;
+  double smaller = products(0, 1) / products(larger, larger);
+  if (!(std::abs(smaller) > none)) smaller = 0;
+  return larger == 0 ? Ratio{1, smaller} : Ratio{smaller, 1};
+}
+
+// How far the stresses are from their ratio, as a part of the largest one.
+double scatter_of(const TestCurve& test) {
+  const Vec2 direction(test.ratio.a, test.ratio.b);
+  double largest = 0;
+  double off = 0;
+  for (const TestPoint& point : test.points) {
+    const Vec2 rest = point.stress - direction * direction.dot(point.stress) / direction.squaredNorm();
+    off = std::max(off, rest.norm());
+    largest = std::max(largest, point.stress.norm());
+  }
+  return off / largest;
+}
+
+} // namespace
+
+TestCurve read_test(const std::filesystem::path& file) {
+  namespace test_data = pipeline::test_data;
+  std::vector<pipeline::schema::Problem> problems;
+  const std::string name = file.generic_string();
+  const std::string text = pipeline::schema::read_text(file, {"--data", 0, 0}, problems);
+  if (!problems.empty()) throw base::InputError(fmt::format("--data: {}", problems.front().message));
+  const auto rows = test_data::parse(text, name, test_data::Measure::engineering, {"strain_1", "stress_1"}, problems);
+  if (!problems.empty()) {
+    std::vector<std::string> all;
+    for (const auto& problem : problems) all.push_back(to_string(problem));
+    throw base::InputError(fmt::format("{}", fmt::join(all, "\n")));
+  }
+  const auto measured = [](double value) { return std::isnan(value) ? 0 : value; };
+  TestCurve test;
+  test.name = file.stem().string();
+  for (const test_data::Row& row : rows) {
+    TestPoint point;
+    point.strain = Vec2(row.strain_1, measured(row.strain_2));
+    point.stress = Vec2(row.stress_1, measured(row.stress_2));
+    if (!std::isnan(row.time)) point.time = row.time - rows.front().time;
+    point.weight = row.weight;
+    test.points.push_back(point);
+  }
+  test.ratio = ratio_of(test.points);
+  if (driven_axis(test.ratio) == 1 && std::isnan(rows.front().strain_2)) {
+    throw base::InputError(fmt::format("{}:{}:1: the larger stress is `stress_2`: the column `strain_2` is needed",
+                                       name, rows.front().line));
+  }
+  constexpr double most = 0.1;
+  if (const double scatter = scatter_of(test); !(scatter < most)) {
+    throw base::InputError(
+        fmt::format("{}: the two stresses have no common ratio (up to {:.0f} % of the largest is off "
+                    "the best one); write each test to a file of its own",
+                    name, 100 * scatter));
+  }
+  return test;
+}
+
+Misfit misfit(const law::Law& material, const TestCurve& test, const Options& options, std::optional<double> rate) {
+  Misfit result;
+  law::TestPiece piece(material, options.angle);
+  const law::Control control = law::biaxial(test.ratio.a, test.ratio.b);
+  const int axis = driven_axis(test.ratio);
+  const bool both = test.ratio.a != 0 && test.ratio.b != 0;
+  double squares = 0;
+  double weights = 0;
+  for (const TestPoint& point : test.points) {
+    result.measured = std::max(result.measured, point.stress.cwiseAbs().maxCoeff());
+  }
+  for (const TestPoint& point : test.points) {
+    // steps as short as those of the curves
+    const double from = piece.driven(control);
+    const double way = point.strain[axis] - from;
+    double duration = 0;
+    if (point.time) {
+      duration = std::max(*point.time - piece.state().time, 0.0);
+    } else if (rate) {
+      duration = std::abs(way) / *rate;
+    }
+    constexpr double rounding = 1e-9;
+    const double of_curve = std::ceil(std::abs(way) * options.steps / options.strain - rounding);
+    const int steps = std::max(1, static_cast<int>(of_curve)) * (duration > 0 ? steps_in_time : 1);
+    for (int i = 1; i <= steps && result.end.empty(); ++i) {
+      if (piece.advance(control, from + way * i / steps, duration / steps)) continue;
+      const char* why = piece.status() == law::Status::outside_data ? "its data end before" : "it knows no such state";
+      result.end = fmt::format("not compared from a strain of {:.3g} % on: {}", 100 * point.strain[axis], why);
+    }
+    if (!result.end.empty()) break;
+    const Vec2 difference = piece.state().nominal_stress().head<2>() - point.stress;
+    for (int i = 0; i < 2; ++i) {
+      if (!both && i != axis) continue;
+      squares += point.weight * difference[i] * difference[i];
+      weights += point.weight;
+      if (!(std::abs(difference[i]) > result.max)) continue;
+      result.max = std::abs(difference[i]);
+      result.at = point.strain[axis];
+    }
+    ++result.points;
+  }
+  if (weights > 0) result.rms = std::sqrt(squares / weights);
+  return result;
+}
+
+} // namespace pneuma::stages::material

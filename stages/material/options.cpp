@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/material/options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "pipeline/schema/quantity.h"
+#include "pipeline/schema/spelling.h"
+
+namespace pneuma::stages::material {
+
+namespace {
+
+using base::InputError;
+using pipeline::schema::parse_number;
+using pipeline::schema::suggestion;
+
+// A number in `unit` or, with a unit behind it, any quantity of its kind.
+double quantity(const std::string& option, const std::string& text, const std::string& unit) {
+  if (const auto plain = parse_number(text)) return *plain;
+  const pipeline::schema::Quantity read = pipeline::schema::parse_quantity(text, unit);
+  if (!read.error.empty()) throw InputError(fmt::format("{}: {}", option, read.error));
+  return read.value;
+}
+
+int whole(const std::string& option, const std::string& text, int least, int most) {
+  const auto number = parse_number(text);
+  if (!number || *number != std::floor(*number) || *number < least || *number > most) {
+    throw InputError(fmt::format("{}: `{}` is not a whole number from {} to {}", option, text, least, most));
+  }
+  return static_cast<int>(*number);
+}
+
+std::vector<std::string> parts(const std::string& text) {
+  std::vector<std::string> result;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    result.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return result;
+}
+
+void set_strain(Options& options, const std::string& text) {
+  options.strain = quantity("--strain", text, "1");
+  if (!(options.strain > 0 && options.strain <= 10)) {
+    throw InputError(fmt::format("--strain: `{}` is not above 0 and up to 10 (1000 %)", text));
+  }
+}
+
+void set_rates(Options& options, const std::string& text) {
+  options.rates.clear();
+  for (const std::string& one : parts(text)) {
+    options.rates.push_back(quantity("--rate", one, "1/s"));
+    if (!(options.rates.back() > 0)) throw InputError(fmt::format("--rate: `{}` is not positive", one));
+  }
+}
+
+void set_ratios(Options& options, const std::string& text) {
+  options.ratios.clear();
+  for (const std::string& one : parts(text)) {
+    const std::size_t colon = one.find(':');
+    const auto a = parse_number(one.substr(0, colon));
+    const auto b = parse_number(colon == std::string::npos ? std::string() : one.substr(colon + 1));
+    if (!a || !b || (*a == 0 && *b == 0)) {
+      throw InputError(fmt::format("--ratios: `{}` is no ratio of stresses such as 1:0 (uniaxial), 1:1 or 2:1", one));
+    }
+    options.ratios.push_back({*a, *b});
+  }
+}
+
+void set_temperature(Options& options, const std::string& text) {
+  const pipeline::schema::Quantity read = pipeline::schema::parse_quantity(text, "K");
+  if (!read.error.empty()) throw InputError(fmt::format("--temperature: {}", read.error));
+  options.temperature = read.value;
+}
+
+void set_angle(Options& options, const std::string& text) {
+  const pipeline::schema::Quantity read = pipeline::schema::parse_quantity(text, "rad");
+  if (!read.error.empty()) throw InputError(fmt::format("--angle: {}", read.error));
+  options.angle = read.value;
+}
+
+struct Switch {
+  std::string name;
+  bool has_value;
+  std::function<void(Options&, const std::string&)> set;
+};
+
+const std::vector<Switch>& switches() {
+  static const std::vector<Switch> all = {
+      {"--strain", true, set_strain},
+      {"--steps", true, [](Options& o, const std::string& v) { o.steps = whole("--steps", v, 10, 100000); }},
+      {"--ratios", true, set_ratios},
+      {"--rate", true, set_rates},
+      {"--temperature", true, set_temperature},
+      {"--angle", true, set_angle},
+      {"--true", false, [](Options& o, const std::string&) { o.true_measures = true; }},
+      {"--data", true, [](Options& o, const std::string& v) { o.data.push_back(v); }},
+      {"--csv", true, [](Options& o, const std::string& v) { o.csv = v; }},
+      {"--svg", true, [](Options& o, const std::string& v) { o.svg = v; }},
+      {"--fit", true, [](Options& o, const std::string& v) { o.branches = whole("--fit", v, 1, 8); }},
+      {"--softening", false, [](Options& o, const std::string&) { o.softening = true; }},
+  };
+  return all;
+}
+
+const Switch& switch_called(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Switch& known : switches()) {
+    if (known.name == name) return known;
+    names.push_back(known.name);
+  }
+  throw InputError(fmt::format("unknown option `{}`{}\n{}", name, suggestion(name, names), usage()));
+}
+
+} // namespace
+
+std::string name_of(const Ratio& ratio) {
+  if (ratio.b == 0) return "uniaxial";
+  return fmt::format("{:g}:{:g}", ratio.a, ratio.b);
+}
+
+const char* usage() {
+  return "usage: pneuma material MATERIALS.yaml [NAME ...] [options]\n"
+         "  --strain E           pull the pieces to this engineering strain, and back to no force [10 %]\n"
+         "  --ratios A:B,...     nominal stresses along the two axes; 1:0 is uniaxial [1:0,1:1,2:1]\n"
+         "  --rate R,...         strain rates of foils that know time, 1/s [0.001]\n"
+         "  --temperature T      of the foil, where its values depend on it [23 degC]\n"
+         "  --angle A            from the warp direction to the first axis [0 deg]\n"
+         "  --true               logarithmic strain and Cauchy stress [engineering strain and nominal stress]\n"
+         "  --steps N            of loading [100]\n"
+         "  --data FILE.csv      data of a test to compare with: the misfit, and marks in the picture; again for more\n"
+         "  --csv FILE.csv       write all points of the curves\n"
+         "  --svg FILE.svg       draw the curves\n"
+         "  --fit N              the N hardening branches nearest to the uniaxial test data, or to the curve itself\n"
+         "  --softening          branches before the last may fall";
+}
+
+Options parse(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  Options options;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!words[i].starts_with("--")) {
+      if (options.materials.empty()) {
+        options.materials = words[i];
+      } else {
+        options.names.push_back(words[i]);
+      }
+      continue;
+    }
+    const Switch& found = switch_called(words[i]);
+    if (found.has_value && ++i == words.size()) {
+      throw InputError(fmt::format("{} needs a value\n{}", found.name, usage()));
+    }
+    found.set(options, words[i]);
+  }
+  if (options.materials.empty()) throw InputError(fmt::format("no file of materials is given\n{}", usage()));
+  if (!options.csv.empty() && std::find(options.data.begin(), options.data.end(), options.csv) != options.data.end()) {
+    throw InputError(fmt::format("--csv: `{}` holds the test data", options.csv.string()));
+  }
+  if (options.true_measures && !options.data.empty()) {
+    throw InputError("--true: tests are in engineering strain and nominal stress; leave --data out, or --true");
+  }
+  if (!options.svg.empty() && options.svg.extension() != ".svg") {
+    throw InputError(fmt::format("--svg: `{}` does not end in .svg", options.svg.string()));
+  }
+  return options;
+}
+
+} // namespace pneuma::stages::material

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pneuma::stages::material {
+
+// Nominal stresses along the two axes of a test piece.
+struct Ratio {
+  double a = 1, b = 0; // b = 0: uniaxial
+};
+std::string name_of(const Ratio& ratio); // "uniaxial", "2:1"
+
+// What the command line asks for.
+struct Options {
+  std::filesystem::path materials;
+  std::vector<std::string> names; // none: all in the file
+  std::vector<Ratio> ratios = {{1, 0}, {1, 1}, {2, 1}};
+  double strain = 0.1;               // to which the pieces are pulled, engineering or logarithmic
+  int steps = 100;                   // of loading
+  std::vector<double> rates;         // of that strain, 1/s
+  std::optional<double> temperature; // K
+  double angle = 0;                  // from the warp direction to axis 1, rad
+  bool true_measures = false;        // logarithmic strain and Cauchy stress
+  std::vector<std::filesystem::path> data;
+  std::filesystem::path csv, svg;
+  int branches = 0; // to be fitted; 0: none
+  bool softening = false;
+};
+
+const char* usage();
+
+// Throws InputError with what is wrong and what is allowed.
+Options parse(int argc, char** argv);
+
+} // namespace pneuma::stages::material

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Example B11 (Coelho 2012, sec. 6.4): the burst test through its pressure peak, by three controls and two elements.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tests/verification/examples/burst.h"
+#include "tests/verification/examples/table.h"
+
+namespace pneuma::tests {
+
+namespace {
+
+using namespace solver;
+
+constexpr double kPa = 1e3;
+constexpr double high = 0.26; // m, deflection well behind the peak
+constexpr int thesis = 20;    // divisions: 800 elements
+
+material::Logarithmic large_strain(bool tangent = false) {
+  return {burst_elasticity, burst_flow(tangent)};
+}
+
+std::string mesh_name(ElementType type, int divisions) {
+  return fmt::format("{} {}", 2 * divisions * divisions, geometry::name_of(type));
+}
+
+path::HeldDisplacement apex() {
+  return path::displacement_of(0, Vec3(0, 0, 1));
+}
+
+// Steps of 13 mm deflection at most, or as many of the others.
+path::ControlledPathOptions twenty_parts() {
+  path::ControlledPathOptions options;
+  options.parts = 20;
+  return options;
+}
+
+Burst by_displacement(ElementType type, int divisions, const material::Law& law) {
+  return Burst(burst_disc(type, divisions, law), path::DisplacementPath{apex(), high}, twenty_parts());
+}
+
+TEST(BurstTest, HasTheMeshOfTheThesis) {
+  const material::Logarithmic law = large_strain();
+  for (const auto& [type, nodes] : {std::pair(ElementType::T3, 441u), std::pair(ElementType::T6, 1681u)}) {
+    const assembly::Model model = burst_disc(type, thesis, law);
+    EXPECT_EQ(model.mesh.nodes.size(), nodes);
+    EXPECT_EQ(model.mesh.element_count(model.mesh.blocks[0]), 800);
+  }
+}
+
+class BurstOfEveryTriangle : public testing::TestWithParam<ElementType> {};
+INSTANTIATE_TEST_SUITE_P(BurstTest, BurstOfEveryTriangle, testing::Values(ElementType::T3, ElementType::T6),
+                         element_name);
+
+TEST_P(BurstOfEveryTriangle, PeaksWhereTheThesisSays) {
+  const Burst b = by_displacement(GetParam(), thesis, large_strain());
+  ASSERT_TRUE(b.reached() && b.peak) << b.path.reason;
+  const std::string mesh = mesh_name(GetParam(), thesis);
+  expect({"B11", "peak pressure, kPa", "32.9", "thesis, state 1", 32.9, b.peak->pressure / kPa, 0.005,
+          "three printed digits; 20 or 80 steps differ by 0.14 %, T3 and T6 by 0.13 %", mesh, b.iterations()});
+  expect({"B11", "deflection at the peak / radius", "0.7 (figure 6.20)", "thesis", 0.7,
+          b.peak->deflection / burst_radius, 0.02, "read off a curve that is flat there", mesh, b.iterations()});
+  EXPECT_LT(b.points.back().pressure, 0.9 * b.peak->pressure);
+  EXPECT_LT(b.points.back().pressure, 29.5 * kPa);
+}
+
+TEST_P(BurstOfEveryTriangle, ControlsOfVolumeDisplacementAndArcLengthAgree) {
+  constexpr int divisions = 10;
+  const Burst by_height = by_displacement(GetParam(), divisions, large_strain());
+  ASSERT_TRUE(by_height.reached() && by_height.peak) << by_height.path.reason;
+  const std::string mesh = mesh_name(GetParam(), divisions);
+  path::ArcLengthPath arc;
+  arc.displacement = high;
+  arc.after_peak = 28 / 32.9;
+  for (const path::PathControl& control : {path::PathControl(path::VolumePath{0, 7.6e-3}), path::PathControl(arc)}) {
+    const bool is_arc = std::holds_alternative<path::ArcLengthPath>(control);
+    const Burst b(burst_disc(GetParam(), divisions, large_strain()), control, twenty_parts());
+    ASSERT_TRUE(b.reached() && b.peak) << b.path.reason;
+    expect({"B11", fmt::format("peak pressure by {}, kPa", is_arc ? "arc length" : "volume"), "32.9", "by displacement",
+            by_height.peak->pressure / kPa, b.peak->pressure / kPa, 1e-3,
+            "plastic steps of other lengths; 20 or 80 of them differ by 0.14 %", mesh, b.iterations()});
+    EXPECT_LT(b.points.back().pressure, 0.95 * b.peak->pressure);
+  }
+}
+
+TEST(BurstTest, FallsTo28kPaBehindThePeak) {
+  const assembly::Model model = burst_disc(ElementType::T3, thesis, large_strain());
+  path::ArcLengthPath arc;
+  arc.after_peak = 28 / 32.9;
+  arc.displacement = 2 * high; // not reached
+  path::ControlledPathOptions options;
+  options.parts = 40;
+  const Burst b(model, arc, options);
+  ASSERT_TRUE(b.reached()) << b.path.reason;
+  ASSERT_TRUE(b.peak);
+  const BurstPoint& end = b.points.back();
+  std::printf("pressure %.3f kPa at deflection %.4f of the radius\n", end.pressure / kPa,
+              end.deflection / burst_radius);
+  expect({"B11", "pressure behind the peak, kPa", "28", "thesis, state 2", 28, end.pressure / kPa, 0.005,
+          "the path ends at 28/32.9 of its own peak", mesh_name(ElementType::T3, thesis), b.iterations(),
+          fmt::format("deflection {:.3f} of the radius", end.deflection / burst_radius)});
+  EXPECT_GT(end.deflection, b.peak->deflection);
+}
+
+TEST(BurstTest, SmallStrainLawFindsNoPeak) {
+  const Burst b = by_displacement(ElementType::T3, 10, material::J2{burst_elasticity, burst_flow()});
+  ASSERT_TRUE(b.reached()) << b.path.reason;
+  EXPECT_TRUE(b.path.critical.empty());
+  for (std::size_t i = 1; i < b.points.size(); ++i) EXPECT_GT(b.points[i].pressure, b.points[i - 1].pressure);
+  EXPECT_GT(b.points.back().pressure, 1.3 * 32.9 * kPa);
+}
+
+TEST(BurstTest, ReadingTheModuliAsTangentsRaisesThePeak) {
+  // 1/H = 1/K - 1/E: 168.5 and 32.3 MPa instead of 120 and 30
+  const Burst plastic = by_displacement(ElementType::T3, 10, large_strain());
+  const Burst tangent = by_displacement(ElementType::T3, 10, large_strain(true));
+  ASSERT_TRUE(plastic.peak && tangent.peak);
+  std::printf("peak with plastic moduli %.3f kPa at %.4f of the radius, with tangent moduli %.3f kPa at %.4f\n",
+              plastic.peak->pressure / kPa, plastic.peak->deflection / burst_radius, tangent.peak->pressure / kPa,
+              tangent.peak->deflection / burst_radius);
+  EXPECT_GT(tangent.peak->pressure, 1.005 * plastic.peak->pressure);
+}
+
+TEST(BurstTest, NewtonConvergesQuadraticallyAtThePeakLikeTable64) {
+  Burst b(burst_disc(ElementType::T3, thesis, large_strain()), path::DisplacementPath{apex(), 0.69 * burst_radius},
+          twenty_parts());
+  ASSERT_TRUE(b.reached()) << b.path.reason;
+  path::Work work;
+  path::Tangent tangent(b.system, work);
+  b.system.evaluate_accepted(b.at, true);
+  ASSERT_TRUE(tangent.factorize(b.at, path::Tangent::Repair::indefinite));
+  assembly::Configuration at = b.at;
+  const path::Held held = apex();
+  std::vector<double> norms;
+  for (int i = 0; i < 8; ++i) { // over the peak: the first along the tangent, as the thesis counts them
+    const path::Row row = path::row_of(held, 0.715 * burst_radius, b.system, at);
+    const std::optional<path::Change> step = tangent.step(at, row);
+    ASSERT_TRUE(step);
+    norms.push_back(std::sqrt(path::dot_u(*step, *step)));
+    at = path::moved(b.system, at, *step);
+    if (norms.back() < 1e-9) break;
+    ASSERT_TRUE(b.system.evaluate(at, true).possible);
+    ASSERT_TRUE(tangent.factorize(at, path::Tangent::Repair::indefinite));
+  }
+  std::printf("norms of the displacements, m:");
+  for (const double n : norms) std::printf(" %.3e", n);
+  std::printf("\n");
+  ASSERT_LT(norms.back(), 1e-9);
+  EXPECT_LE(norms.size(), 7u);
+  double order = 0;
+  for (std::size_t i = 2; i < norms.size(); ++i) {
+    if (norms[i] > 1e-11)
+      order = std::max(order, std::log(norms[i] / norms[i - 1]) / std::log(norms[i - 1] / norms[i - 2]));
+  }
+  EXPECT_GT(order, 1.6);
+}
+
+} // namespace
+
+} // namespace pneuma::tests

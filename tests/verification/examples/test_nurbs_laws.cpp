@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Examples B5 to B7 (Coelho 2012, sec. 4.5): PD-NURBS against the laws that its tables are fitted to.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "solver/material/nurbs_fit.h"
+#include "tests/verification/examples/rubber_sheet.h"
+#include "tests/verification/examples/strip.h"
+#include "tests/verification/examples/table.h"
+
+namespace pneuma::tests {
+
+namespace {
+
+using namespace solver;
+
+constexpr double percent = 100;
+
+material::PdFit fit(const material::Law& law, int net, int degree, material::StrainRange range) {
+  material::NurbsOptions options;
+  options.net = {net, net};
+  options.degree = degree;
+  options.range = range;
+  return material::fit_pd_nurbs(law, options);
+}
+
+// Displacements (x, y), stresses and strains (11, 22, 12) of a flat sheet: all of one kind in a row.
+struct Fields {
+  std::array<std::vector<double>, 8> values;
+
+  Fields(const assembly::System& system, const assembly::Configuration& at) {
+    for (std::size_t i = 0; i < at.positions.size(); ++i) {
+      const Vec3 u = at.positions[i] - system.model().mesh.nodes[i];
+      values[0].push_back(u.x());
+      values[1].push_back(u.y());
+    }
+    for (const element::PointState& p :
+         element::point_states(system.foils()[0].membrane, at.positions, system.history(0))) {
+      for (int c = 0; c < 3; ++c) {
+        values[2 + static_cast<std::size_t>(c)].push_back(p.stress[c]);
+        values[5 + static_cast<std::size_t>(c)].push_back(p.strain[c]);
+      }
+    }
+  }
+};
+
+double largest(const std::vector<double>& values) {
+  double all = 0;
+  for (const double v : values) all = std::max(all, std::abs(v));
+  return all;
+}
+
+// Largest difference over the largest value, %, of each field.
+std::array<double, 8> differences(const Fields& a, const Fields& b) {
+  std::array<double, 8> result{};
+  for (std::size_t f = 0; f < 8; ++f) {
+    double difference = 0;
+    for (std::size_t i = 0; i < a.values[f].size(); ++i) {
+      difference = std::max(difference, std::abs(a.values[f][i] - b.values[f][i]));
+    }
+    result[f] = percent * difference / largest(b.values[f]);
+  }
+  return result;
+}
+
+std::string list(const std::array<double, 8>& errors) {
+  constexpr std::array names = {"ux", "uy", "sxx", "syy", "sxy", "exx", "eyy", "exy"};
+  std::string text;
+  for (std::size_t i = 0; i < 8; ++i) text += fmt::format("{}{} {:.2g}", i == 0 ? "" : ", ", names[i], errors[i]);
+  return text;
+}
+
+TEST(PdNurbs, FollowsNeoHookeLikeTable42) {
+  // A square clamped at its lower edge and pulled by dead forces on the upper one. 89.44 kN (a reading: the print's MN
+  // would be 89 GPa) stretch the free part by about 1.5.
+  constexpr double thickness = 1e-3;
+  const double shear = 250e6 / (2 * (1 + 0.3));
+  const material::MooneyRivlin law{shear / 2, 0};
+  const auto model = [&](const material::Law& of) {
+    assembly::Model m = plane_model(rectangle(1, 1, 10, 10), of, thickness);
+    for (const Index node : nodes_at(m.mesh, 1, 0)) m.fixed[3 * static_cast<std::size_t>(node)] = 1;
+    pull_edge(m, nodes_at(m.mesh, 1, 1), 1, 89.44e3);
+    return m;
+  };
+  const Solved exact(model(law));
+  const Solved net(model(material::PdNurbs{fit(law, 25, 3, {-0.46, 3}).table, false, 0.5}));
+  ASSERT_TRUE(exact.converged() && net.converged()) << net.path.reason;
+  const Fields a(net.system, net.at), b(exact.system, exact.at);
+  const double longest = 1 + largest(b.values[5 + 1]); // sqrt(1 + 2 E) > 1.5 needs E > 0.625
+  EXPECT_GT(longest, 1.625);
+  const std::array<double, 8> errors = differences(a, b);
+  const char* const mesh = "100 Q4, 121 nodes";
+  const std::string remark = "errors in %: " + list(errors);
+  expect({"B5", "largest error of displacement y, net of 25, %", "0.0165", "neo-Hooke", 0, errors[1], 0.0165,
+          "the thesis' own", mesh, net.iterations(), remark + "; print: 89.44 MN and 143 nodes, which fit nothing"});
+  expect({"B5", "largest error of stress y, net of 25, %", "0.15", "neo-Hooke", 0, errors[3], 0.15, "the thesis' own",
+          mesh, net.iterations()});
+}
+
+TEST(PdNurbs, FollowsMooneyRivlinLikeTables43And44) {
+  const Solved exact(rubber_sheet(rubber), 3);
+  ASSERT_TRUE(exact.converged());
+  const Fields b(exact.system, exact.at);
+  struct Net {
+    int size;
+    const char* printed; // largest error of table 4.4, %
+    double allowed;      // %
+    const char* iterations;
+  };
+  for (const Net& net : {Net{15, "none: diverged", 5.558, "5, diverged"}, Net{20, "5.558 (sxx)", 5.558, "9, 13, 8"},
+                         Net{40, "0.178 (sxx)", 0.178, "6, 8, 8"}, Net{70, "0.074 (syy)", 0.074, "5, 6, 7"},
+                         Net{100, "0.011", 0.011, "5, 6, 5"}}) {
+    const material::PdNurbs law{fit(rubber, net.size, 3, {-0.46, 14}).table, true, 0.5};
+    const Solved s(rubber_sheet(law), 3);
+    ASSERT_TRUE(s.converged()) << s.path.reason;
+    const std::array<double, 8> errors = differences(Fields(s.system, s.at), b);
+    expect({"B6", fmt::format("largest error of all fields, net of {}, %", net.size), net.printed, "Mooney-Rivlin", 0,
+            *std::max_element(errors.begin(), errors.end()), net.allowed,
+            net.size == 15 ? "the thesis' with 20" : "the thesis' own", rubber_mesh, s.iterations(),
+            "errors in %: " + list(errors)});
+
+    assembly::System system(rubber_sheet(law), 1);
+    assembly::Configuration at = start_of(system.model());
+    std::string norms;
+    std::size_t most = 0;
+    for (const double traction : rubber_tractions) {
+      at.load_factor = traction / rubber_tractions.back();
+      const PlainNewton newton = plain_newton(system, at, 1e-6, 20);
+      ASSERT_TRUE(newton.converged);
+      most = std::max(most, newton.norms.size());
+      norms += norms.empty() ? "norms, m:" : " |";
+      for (const double n : newton.norms) norms += fmt::format(" {:.2e}", n);
+    }
+    expect({"B6", fmt::format("most iterations of a step, net of {}", net.size), net.iterations, "Mooney-Rivlin itself",
+            5, static_cast<double>(most), 0.001, "the table is twice continuously differentiable", rubber_mesh,
+            static_cast<int>(most), norms});
+  }
+}
+
+// The strip at one displacement, by the net, by the deformation law that the net is a table of (J2 in a single step
+// from the virgin state) and by flow theory in a hundred steps.
+TEST(PdNurbs, FollowsTheDeformationLawOfPlasticityLikeTable46) {
+  const material::J2 law{strip_elasticity, strip_flow()};
+  const char* const mesh = "480 Q4, 531 nodes";
+  struct Case {
+    double displacement;         // m
+    material::StrainRange range; // of the exact solution, and a tenth more
+    double nodal, peak;          // allowed errors of displacements and of the largest stress, %
+    double flow;                 // %
+    const char* why;
+  };
+  for (const Case& c : {Case{0.04e-3, {-0.0043, 0.012}, 0.032, 0.040, 1, "the thesis' own"},
+                        Case{0.1e-3,
+                             {-0.031, 0.072},
+                             0.5,
+                             0.4,
+                             10,
+                             "all flows: with K = 0.2 GPa a stress error of 1 MPa moves strains by 0.5 %"}}) {
+    const PulledStrip exact(perforated_strip, law, c.displacement, 1);
+    const PulledStrip flow(perforated_strip, law, c.displacement, 100);
+    ASSERT_TRUE(exact.reached() && flow.reached());
+    ASSERT_EQ(exact.steps, 1); // else it is not the deformation law
+    const PulledStrip net(perforated_strip, material::PdNurbs{fit(law, 70, 2, c.range).table, false, 0.5},
+                          c.displacement, 1);
+    ASSERT_TRUE(net.reached()) << net.path.reason;
+    const Fields a(net.system, net.at), b(exact.system, exact.at), f(flow.system, flow.at);
+    const std::array<double, 8> errors = differences(a, b);
+    const std::string at = fmt::format("at {:.2f} mm", c.displacement / 1e-3);
+    expect({"B7", "largest error of displacement y " + at + ", net against the exact deformation law, %", "0.032",
+            "J2 in one step", 0, errors[1], c.nodal, c.why, mesh, net.iterations(), "errors in %: " + list(errors)});
+    expect({"B7", "error of the largest stress y " + at + ", net against the exact deformation law, %", "0.040",
+            "J2 in one step", 0, percent * std::abs(largest(a.values[3]) / largest(b.values[3]) - 1), c.peak, c.why,
+            mesh, net.iterations(), "the thesis compares the largest values of its pictures"});
+    expect({"B7", "force " + at + ", net against the exact deformation law, kN", "", "J2 in one step",
+            exact.points.back().force / 1e3, net.points.back().force / 1e3, 1e-4,
+            "a mean over the net section of errors of both signs", mesh, net.iterations()});
+    const std::array<double, 8> theory = differences(b, f);
+    expect({"B7", "largest difference of displacement y " + at + ", deformation law against flow theory, %", "",
+            "J2 in 100 steps", 0, theory[1], c.flow, "stresses turn beside the hole: no theory bounds it", mesh,
+            flow.iterations(), "differences in %: " + list(theory)});
+    expect({"B7", "force " + at + ", deformation law against flow theory, kN", "", "J2 in 100 steps",
+            flow.points.back().force / 1e3, exact.points.back().force / 1e3, 2e-3,
+            "the limit load knows no path; what hardens does", mesh, flow.iterations()});
+  }
+}
+
+} // namespace
+
+} // namespace pneuma::tests
