@@ -268,9 +268,17 @@ OgdenLaw Builder::ogden_of(const Value& terms) {
   OgdenLaw law;
   double twice_shear_modulus = 0;
   for (const Value& item : terms.items) {
-    const OgdenLaw::Term term{number_of(item, "mu"), number_of(item, "alpha")};
-    law.terms.push_back(term);
-    twice_shear_modulus += term.mu * term.alpha;
+    law.terms.push_back({number_of(item, "mu"), number_of(item, "alpha")});
+    twice_shear_modulus += law.terms.back().mu * law.terms.back().alpha;
+  }
+  if (twice_shear_modulus <= 0) {
+    fail(terms.mark, fmt::format("the shear modulus, half the sum of mu alpha, must be positive, not {:.4g} MPa",
+                                 twice_shear_modulus / 2e6));
+    return law;
+  }
+  for (std::size_t i = 0; i < law.terms.size(); ++i) {
+    const OgdenLaw::Term& term = law.terms[i];
+    const Value& item = terms.items[i];
     if (term.alpha == 0) {
       fail(item["alpha"]->mark, "`alpha` must not be 0: the term would have no meaning");
     } else if (term.mu == 0) {
@@ -281,10 +289,6 @@ OgdenLaw Builder::ogden_of(const Value& terms) {
                                   text_of(item, "mu"), term.alpha));
     }
   }
-  if (twice_shear_modulus <= 0) {
-    fail(terms.mark, fmt::format("the shear modulus, half the sum of mu alpha, must be positive, not {:.4g} MPa",
-                                 twice_shear_modulus / 2e6));
-  }
   return law;
 }
 
@@ -294,7 +298,7 @@ TableLaw Builder::table_of(const Value& material) {
   law.fit_to = text_of(material, "fit_to");
   law.degree = static_cast<int>(number_of(material, "degree", law.degree));
   law.goes_on = text_of(material, "outside") == "linear";
-  law.smoothing = number_of(material, "smoothing", law.smoothing);
+  law.smoothing = optional_number(material, "smoothing");
   law.nu = number_of(material, "nu", law.nu);
   if (const Value* potential = material["potential"]) law.potential = potential->flag;
   if (const Value* net = material["net"]) {
@@ -310,8 +314,10 @@ TableLaw Builder::table_of(const Value& material) {
     }
   }
   if (const Value* range = material["range"]) {
-    law.range = {range->items[0].number, range->items[1].number};
-    if (!((*law.range)[0] <= 0 && (*law.range)[1] > 0)) {
+    const double least = range->items[0].number, most = range->items[1].number;
+    if (least <= 0 && most > 0) {
+      law.range = {least, most};
+    } else {
       fail(range->mark, fmt::format("`range` must hold the strain 0, from which the foil starts, and end above it: "
                                     "[{}, {}] does not",
                                     range->items[0].text, range->items[1].text));
@@ -391,9 +397,10 @@ void Builder::check_fits() {
     return table != nullptr ? table->fit_to : std::string();
   };
   std::set<std::string> told; // in circles
-  for (const auto& [name, value] : tables_) {
+  for (const std::string& name : material_names_) {
     const std::string target = fit_to(name);
-    if (target.empty() || value["fit_to"] == nullptr) continue;
+    if (target.empty()) continue;
+    const Value& value = tables_.at(name);
     const Mark& mark = value["fit_to"]->mark;
     if (std::find(material_names_.begin(), material_names_.end(), target) == material_names_.end()) {
       fail(mark, fmt::format("there is no material `{}`{}; known: {}", target, suggestion(target, material_names_),

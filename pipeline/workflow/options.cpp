@@ -498,9 +498,8 @@ Options table_law(bool along_axes) {
              "what happens where a strain leaves the data")
           .otherwise("error"),
       flag("potential", "the stresses are derivatives of one stored energy").otherwise("on"),
-      number("smoothing", "weight of bends in the surfaces against residuals")
-          .within({0, 1e6, "above 0, up to 1e6", false, true})
-          .otherwise("1e-6"),
+      number("smoothing", "weight of bends in the surfaces against residuals; without it as little as the points need")
+          .within({0, 1e6, "above 0, up to 1e6", false, true}),
       poissons_ratio("nu", "of the thickness, about which the points say nothing; 0.5: the volume stays")
           .otherwise("0.5")};
   if (along_axes) {

@@ -106,7 +106,7 @@ struct TableLaw {
   std::optional<std::array<double, 2>> range; // Green-Lagrange strain; none: that of the points
   bool goes_on = false;                       // linearly outside the data; otherwise an error
   bool potential = true;                      // stresses are derivatives of one potential
-  double smoothing = 1e-6;                    // weight of the second derivatives
+  std::optional<double> smoothing;            // weight of bends against residuals; none: as the fit chooses
   double nu = 0.5;                            // of the thickness, about which the points say nothing
 };
 

@@ -128,7 +128,7 @@ void add_law(Node& node, const TableLaw& law) {
   if (law.range) add(node, "range", numbers({(*law.range)[0], (*law.range)[1]}));
   add(node, "outside", scalar(law.goes_on ? "linear" : "error"));
   add(node, "potential", scalar(law.potential ? "on" : "off"));
-  add(node, "smoothing", plain(law.smoothing));
+  if (law.smoothing) add(node, "smoothing", plain(*law.smoothing));
   add(node, "nu", plain(law.nu));
 }
 

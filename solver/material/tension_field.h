@@ -26,9 +26,10 @@ struct Relaxed {
 //   wrinkled  P = a m (x) m, a > 0, no traction across: S* m = 0, so that S* = s t (x) t, s > 0
 //   slack     no direction t is stretched, E <= E0: E* = E0, S* = 0
 // Potential, stress and tangent are those of W*; it is once continuously differentiable. m is not assumed to be a
-// principal direction of E (it is for isotropic laws); a by Newton in a bracket (W is convex in it), the angle by
-// Newton with a line search on the energy. History is updated from E*; the wrinkles leave none. Fails only where the
-// strain is not finite or the law fails however far the wrinkles are laid flat.
+// principal direction of E (it is for isotropic laws); a by Newton in a bracket (W is convex in it), from there both by
+// Newton, and where that leads nowhere the angle from many starts with a line search on the potential. History is
+// updated from E*; the wrinkles leave none. Fails only where the strain is not finite or the law fails however far the
+// wrinkles are laid flat.
 template <Material M>
 struct TensionField {
   static constexpr auto history_names = M::history_names;
@@ -113,15 +114,19 @@ private:
 
   static constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
-  // Wrinkles across t = (cos, sin) of `angle` laid flat: the amount at which m S m = 0, or none where m S m >= 0
-  // without. `plain` is the law's answer without wrinkles.
-  Solution lay_flat(const Point& p, const Solution& plain, double angle) const noexcept {
+  static void aim(double angle, Solution& at) noexcept {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    Solution at = plain;
     at.along = Vec3(c * c, s * s, 2 * c * s);
     at.across = Vec3(s * s, c * c, -2 * c * s);
     at.shear = Vec3(-c * s, c * s, c * c - s * s);
+  }
+
+  // Wrinkles across t = (cos, sin) of `angle` laid flat: the amount at which m S m = 0, or none where m S m >= 0
+  // without. `plain` is the law's answer without wrinkles.
+  Solution lay_flat(const Point& p, const Solution& plain, double angle) const noexcept {
+    Solution at = plain;
+    aim(angle, at);
     if (plain.status == Status::ok && at.across.dot(plain.law.stress) >= 0) return at;
     // m S m < 0 (or the law fails) at `low`, > 0 at `high`; begin where the foil is as wide as without stress
     const Vec3 missing = law.stress_free_strain(p.old_history) - p.strain;
@@ -170,7 +175,7 @@ private:
     // the direction of the larger principal stretch: exact for isotropic laws without history
     double angle = 0.5 * std::atan2(0.5 * stretch[2], half);
     Solution best = lay_flat(p, plain, angle);
-    if (!balanced(p, best)) {
+    if (!balanced(p, best) && !settle(p, angle, best)) {
       turn(p, plain, angle, best);
       // in tension along, without traction across: of a potential that is convex the minimum; of others, or where
       // Newton stays away from it, the whole circle is looked at
@@ -204,8 +209,44 @@ private:
     return shear > 0 ? shear / scale : shear;
   }
 
-  // None of it, to rounding.
-  static bool balanced(const Point& p, const Solution& at) noexcept { return traction(p, at) <= rounding; }
+  // No traction across the wrinkles, to rounding.
+  static bool balanced(const Point& p, const Solution& at) noexcept {
+    const double size = std::max(p.strain.cwiseAbs().maxCoeff(), at.amount);
+    const double digits = rounding * size * at.law.tangent.cwiseAbs().maxCoeff();
+    return at.status == Status::ok && std::abs(at.across.dot(at.law.stress)) <= digits &&
+           std::abs(at.shear.dot(at.law.stress)) <= digits;
+  }
+
+  // Newton on amount and angle at once, m S m = t S m = 0, from `best` at `angle`; false where that leads nowhere. With
+  // tension along t it is the minimum wherever the potential is convex.
+  bool settle(const Point& p, double angle, Solution& best) const noexcept {
+    Solution at = best;
+    constexpr int soon = 10;
+    for (int i = 0; i < soon && at.status == Status::ok; ++i) {
+      const Vec3& stress = at.law.stress;
+      const double across = at.across.dot(stress);
+      const double shear = at.shear.dot(stress);
+      const double along = at.along.dot(stress);
+      if (balanced(p, at)) {
+        if (along < 0) return false;
+        best = at;
+        return true;
+      }
+      const Vec3 u = at.law.tangent * at.across;
+      const Vec3 v = -2 * at.amount * (at.law.tangent * at.shear);
+      const double a11 = at.across.dot(u), a12 = at.across.dot(v) - 2 * shear; // of m S m
+      const double a21 = at.shear.dot(u), a22 = at.shear.dot(v) + across - along;
+      const double determinant = a11 * a22 - a12 * a21;
+      const double turn = (a21 * across - a11 * shear) / determinant;
+      at.amount += (a12 * shear - a22 * across) / determinant;
+      constexpr double largest = 0.5;
+      if (!(at.amount > 0 && std::abs(turn) < largest)) return false; // NaN too
+      angle += turn;
+      aim(angle, at);
+      ask_law(p, at);
+    }
+    return false;
+  }
 
   // Newton on the wrinkles' angle, dW/dangle = -2 a t S m, downhill on the potential.
   void turn(const Point& p, const Solution& plain, double& angle, Solution& best) const noexcept {

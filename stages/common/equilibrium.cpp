@@ -324,12 +324,19 @@ private:
                        chamber.name, number(-chamber.gauge_pressure)),
            summary);
     }
+    summarize(start_.laws, summary);
     for (const FoilResults& r : foils) {
       summarize(r, summary);
       summarize_balance(r, summary);
       if (r.wrinkled_area + r.slack_area > 1e-3) {
         warn(fmt::format("foil `{}` is wrinkled on {:.1f} % of its area and slack on {:.1f} %", r.name,
                          100 * r.wrinkled_area, 100 * r.slack_area),
+             summary);
+      }
+      if (r.outside_area > 0) {
+        warn(fmt::format("the strains of {:.2g} % of foil `{}` are outside the data of its table, which goes on "
+                         "linearly there",
+                         100 * r.outside_area, r.name),
              summary);
       }
       if (r.compressed_area > 1e-3) {
@@ -403,18 +410,6 @@ private:
 
 } // namespace
 
-solver::material::Law law_of(const pipeline::workflow::Material& material) {
-  namespace law = solver::material;
-  const auto with_tension_field = [&]<class L>(const L& base) {
-    return material.tension_field ? law::Law(law::TensionField<L>{base}) : law::Law(base);
-  };
-  if (const auto* rubber = std::get_if<pipeline::workflow::MooneyRivlinLaw>(&material.law)) {
-    return with_tension_field(law::MooneyRivlin{rubber->C1, rubber->C2});
-  }
-  const auto& elastic = std::get<pipeline::workflow::ElasticLaw>(material.law);
-  return with_tension_field(law::StVenantKirchhoff{elastic.E, elastic.nu});
-}
-
 // A history belongs to the law that wrote it.
 void check_history(const pipeline::state::Foil& foil, const solver::material::Law& law, const std::string& name) {
   const std::span<const std::string_view> names = solver::material::history_names(law);
@@ -440,7 +435,7 @@ assembly::Model make_model(const Start& start, const State& state, double weight
     const pipeline::state::Foil& foil = state.foils[b];
     const Vec3 warp(std::cos(foil.warp_angle), std::sin(foil.warp_angle), 0);
     const pipeline::workflow::Material& material = workflow.materials.at(workflow.cushion.foils[b].material);
-    const solver::material::Law law = law_of(material);
+    const solver::material::Law& law = start.laws.at(material.name).law;
     check_history(foil, law, state.mesh.blocks[b].name);
     model.foils.push_back(assembly::Foil{solver::element::make_reference(state.mesh.element, state.stress_rule,
                                                                          foil.reference, warp, foil.predeformation),

@@ -10,9 +10,6 @@
 
 namespace pneuma::stages::common {
 
-// The law of a material as the solver takes it.
-solver::material::Law law_of(const pipeline::workflow::Material& material);
-
 // Model of the state's foils, chambers and supports: references from the state (which must have them), foils' weight if
 // the site has gravity, chambers regulated at the state's pressures throughout. The stage then changes what it drives.
 // `weight_from` and `weight_to`: parts of the weight that act at load factors 0 and 1.

@@ -85,8 +85,8 @@ void recover(const geometry::Mesh& mesh, const geometry::Block& block, geometry:
              std::span<const Index> strip_of_element, std::span<const Vec3> now, const std::vector<double>& values,
              FoilResults& r) {
   const std::size_t nodes = mesh.nodes.size();
-  for (std::vector<double>* field :
-       {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1, &r.nodal_strain2, &r.nodal_plastic_strain}) {
+  for (std::vector<double>* field : {&r.nodal_von_mises, &r.nodal_stress1, &r.nodal_stress2, &r.nodal_strain1,
+                                     &r.nodal_strain2, &r.nodal_plastic_strain}) {
     field->assign(nodes, 0.0);
   }
   bool first = true;
@@ -195,13 +195,15 @@ FoilResults foil_results(const geometry::Mesh& mesh, Index block, const solver::
     total += area;
     if (p.surface == Surface::wrinkled) r.wrinkled_area += area;
     if (p.surface == Surface::slack) r.slack_area += area;
+    if (solver::material::outside_data(membrane.law, p.strain, nullptr))
+      r.outside_area += area;      // tables have no history
     constexpr double rounding = 1; // Pa
     if (stress.smaller < -rounding) {
       r.compressed_area += area;
       r.compression = std::max(r.compression, -stress.smaller);
     }
   }
-  for (double* part : {&r.compressed_area, &r.wrinkled_area, &r.slack_area}) *part /= total;
+  for (double* part : {&r.compressed_area, &r.wrinkled_area, &r.slack_area, &r.outside_area}) *part /= total;
 
   recover(mesh, b, membrane.reference.rule, strip_of_element, now, values, r);
   const geometry::Block carrying = not_slack(mesh, b, r.surface);
@@ -243,6 +245,7 @@ void summarize(const FoilResults& r, Summary& summary) {
     summary.set(foil + "wrinkled_area_fraction", r.wrinkled_area);
     summary.set(foil + "slack_area_fraction", r.slack_area);
   }
+  if (r.outside_area > 0) summary.set(foil + "outside_data_area_fraction", r.outside_area);
   summary.set(foil + "energy.stored", r.stored);
   if (r.plastic) summary.set(foil + "energy.dissipated", r.dissipated);
   std::vector<std::pair<const char*, const Extreme*>> all = {{"von_mises", &r.von_mises},

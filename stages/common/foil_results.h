@@ -29,7 +29,8 @@ struct FoilResults {
   bool tension_field = false; // the law has one; only then are there
   double wrinkled_area = 0;   // parts of the stress-free area
   double slack_area = 0;
-  bool plastic = false; // the law has a plastic strain; only then are there
+  double outside_area = 0; // strained beyond the data of a table that goes on
+  bool plastic = false;    // the law has a plastic strain; only then are there
   Extreme plastic_strain;
   double dissipated = 0; // J, so far
   double stored = 0;     // J, recoverable

@@ -88,6 +88,7 @@ Start read_start(const char* kind, int argc, char** argv) {
     throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
                                        start.arguments.config.string(), stage.run, start.program, kind));
   }
+  if (needs_input) start.laws = laws_of(start.workflow);
   if (!needs_input || start.arguments.in.empty()) return start;
 
   start.state = pipeline::state::read_state(start.arguments.in);

@@ -7,6 +7,7 @@
 
 #include "pipeline/state/state.h"
 #include "pipeline/workflow/settings.h"
+#include "stages/common/law.h"
 
 namespace pneuma::stages::common {
 
@@ -31,6 +32,7 @@ struct Start {
   std::string program; // "pneuma-inflate"
   Arguments arguments;
   Workflow workflow; // one stage in it
+  MaterialLaws laws; // of the foils' materials; none for the mesh stage
   State state;       // of --in; empty for the mesh stage
 
   const pipeline::workflow::StageSettings& stage() const { return workflow.stages.front(); }

@@ -77,8 +77,8 @@ std::vector<FoilCheck> self_check(const common::Start& start, const State& found
     check_reactions(state, b, force[0], geometry::area(start.workflow.cushion.plan), check);
     checks.push_back(check);
 
-    const auto& material = start.workflow.materials.at(start.workflow.cushion.foils[b].material);
-    const auto g = solver::material::predeformation(common::law_of(material), foil.thickness, force);
+    const solver::material::Law& law = start.laws.at(start.workflow.cushion.foils[b].material).law;
+    const auto g = solver::material::predeformation(law, foil.thickness, force);
     if (!g) return checks; // the inflate stage will say so, with the place
     foil.predeformation.clear();
     for (std::size_t i = 0; i < foil.prestress.size(); i += 3) {

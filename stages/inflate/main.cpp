@@ -17,7 +17,7 @@ using common::Vec3;
 // The predeformation with which a foil carries `force` [point][3], N/m, where it lies now (numerics 11).
 std::vector<double> predeformation(const common::Start& start, std::size_t foil, std::span<const double> force) {
   const workflow::FoilSettings& settings = start.workflow.cushion.foils[foil];
-  const solver::material::Law law = common::law_of(start.workflow.materials.at(settings.material));
+  const solver::material::Law& law = start.laws.at(settings.material).law;
   std::vector<double> result;
   Vec3 last_force = Vec3::Constant(-1);
   Vec3 last = Vec3::Zero();

@@ -100,7 +100,9 @@ Misfit misfit(const law::Law& material, const TestCurve& test, const Options& op
     } else if (rate) {
       duration = std::abs(way) / *rate;
     }
-    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(way) * options.steps / options.strain)));
+    constexpr double rounding = 1e-9;
+    const double of_curve = std::ceil(std::abs(way) * options.steps / options.strain - rounding);
+    const int steps = std::max(1, static_cast<int>(of_curve)) * (duration > 0 ? steps_in_time : 1);
     for (int i = 1; i <= steps && result.end.empty(); ++i) {
       if (piece.advance(control, from + way * i / steps, duration / steps)) continue;
       const char* why = piece.status() == law::Status::outside_data ? "its data end before" : "it knows no such state";

@@ -11,9 +11,6 @@ namespace {
 
 namespace law = solver::material;
 
-// Steps in time of a foil that flows, for each one that is shown: implicit Euler errs by about one part in as many.
-constexpr int steps_in_time = 10;
-
 bool pull(law::TestPiece& piece, const law::Control& control, double to, std::optional<double> rate) {
   if (!rate) return piece.advance(control, to);
   const double from = piece.driven(control);

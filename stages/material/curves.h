@@ -19,6 +19,9 @@ Shown shown(const PieceState& state, bool true_measures);
 // The engineering strain of a strain that is shown, and back.
 double engineering(double strain, bool true_measures);
 
+// Steps in time of a foil that flows, for each one that is shown: the law's implicit steps are of first order.
+inline constexpr int steps_in_time = 10;
+
 // A piece pulled with stresses in a ratio, until the strain along the axis of the larger one is reached, and back to
 // no force at the same rate.
 struct Curve {

@@ -8,7 +8,7 @@
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
 #include "pipeline/schema/spelling.h"
-#include "stages/common/equilibrium.h"
+#include "stages/common/law.h"
 #include "stages/material/fit.h"
 #include "stages/material/report.h"
 
@@ -19,10 +19,9 @@ namespace {
 namespace workflow = pipeline::workflow;
 using base::say;
 
-constexpr double standard_rate = 1e-3;                                 // 1/s, of quasi-static tests
-constexpr double zero_celsius = 273.15, standard_temperature = 296.15; // K
+constexpr double standard_rate = 1e-3; // 1/s, of quasi-static tests
 
-std::vector<workflow::Material> read_materials(const Options& options) {
+workflow::MaterialsResult read_materials(const Options& options) {
   workflow::MaterialsResult result = workflow::read_materials(options.materials, options.names);
   std::vector<std::string> errors;
   for (const workflow::Problem& problem : result.problems) {
@@ -39,22 +38,6 @@ std::vector<workflow::Material> read_materials(const Options& options) {
                                  pipeline::schema::joined(result.names)));
   }
   if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
-  return std::move(result.materials);
-}
-
-// A material with its law at the temperature asked for.
-workflow::Material at_temperature(const workflow::Material& material, const Options& options) {
-  workflow::Material result = material;
-  const double at = options.temperature.value_or(standard_temperature);
-  if (const auto range = workflow::temperatures_of(material)) {
-    if (at < (*range)[0] || at > (*range)[1]) {
-      throw base::InputError(fmt::format("{}: at {:g} degC `{}` has no values: its table goes from {:g} to {:g} degC",
-                                         to_string(material.mark), at - zero_celsius, material.name,
-                                         (*range)[0] - zero_celsius, (*range)[1] - zero_celsius));
-    }
-    result.law = workflow::law_at(material, at);
-    result.other.clear();
-  }
   return result;
 }
 
@@ -83,18 +66,21 @@ void say_misfit(const Misfit& misfit, const TestCurve& test) {
 // The materials one after another, and what is written of all of them.
 class Bench {
 public:
-  Bench(const Options& options, const std::vector<TestCurve>& tests)
-      : options_(options), tests_(tests), drawn_tests_(tests) {}
+  Bench(const Options& options, const std::map<std::string, workflow::Material>& materials,
+        const std::vector<TestCurve>& tests)
+      : options_(options), materials_(materials), tests_(tests), drawn_tests_(tests) {}
 
   void show(const workflow::Material& material) {
-    workflow::Material taut = at_temperature(material, options_);
-    taut.tension_field = false;
+    std::map<std::string, workflow::Material> taut = materials_;
+    taut.at(material.name).tension_field = false;
     say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
     if (const auto range = workflow::temperatures_of(material); options_.temperature && !range) {
       say("  does not depend on the temperature");
     }
     if (material.tension_field) say("  its tension field changes nothing in tension and is left out");
-    show(material.name, common::law_of(taut));
+    const common::MaterialLaw made = common::law_of(taut, material.name, temperature());
+    common::say_fit(material.name, made);
+    show(material.name, made.law);
   }
 
   void show_fit(const workflow::Material& material) {
@@ -102,7 +88,6 @@ public:
     if (tests_.empty()) drawn_tests_ = {test};
     first_drawn_ = curves_.size();
     // what a curve in tension does not tell
-    const workflow::Material here = at_temperature(material, options_);
     double nu = 0.5;
     bool logarithmic = true;
     std::visit(
@@ -110,7 +95,7 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        here.law);
+        workflow::law_at(material, temperature()));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::string name = fmt::format("{}_{}", material.name, options_.branches);
     say(fmt::format("{}: the {} hardening branches nearest to {}, nu and kind of strain as of {}", name,
@@ -153,6 +138,8 @@ private:
     }
   }
 
+  double temperature() const { return options_.temperature.value_or(workflow::Site().temperature); }
+
   // What is to be fitted: the uniaxial test, or the material's own curve.
   TestCurve uniaxial_test(const std::string& name) const {
     const auto is_uniaxial = [](const auto& one) { return one.ratio.a == 0 || one.ratio.b == 0; };
@@ -169,6 +156,7 @@ private:
   }
 
   const Options& options_;
+  const std::map<std::string, workflow::Material>& materials_;
   const std::vector<TestCurve>& tests_;
   std::vector<Curve> curves_;
   std::vector<TestCurve> drawn_tests_;
@@ -183,13 +171,14 @@ int run(int argc, char** argv) {
     }
   }
   const Options options = parse(argc, argv);
-  const std::vector<workflow::Material> materials = read_materials(options);
+  const workflow::MaterialsResult read = read_materials(options);
+  const std::vector<workflow::Material>& materials = read.materials;
   std::vector<TestCurve> tests;
   for (const std::filesystem::path& file : options.data) tests.push_back(read_test(file));
   if (options.branches > 0 && materials.size() != 1) {
     throw base::InputError(fmt::format("--fit fits one material; name one of the {}", materials.size()));
   }
-  Bench bench(options, tests);
+  Bench bench(options, read.known, tests);
   for (const workflow::Material& material : materials) bench.show(material);
   if (options.branches > 0) bench.show_fit(materials.front());
   bench.write();

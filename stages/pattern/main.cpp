@@ -83,8 +83,7 @@ Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& se
   const workflow::FoilSettings& foil = start.workflow.cushion.foils[b];
   const std::vector<double>& prestress = start.state.foils[b].prestress;
   const double tension = prestress.empty() ? 0 : prestress.front();
-  const auto elastic =
-      elastic_stretch(common::law_of(start.workflow.materials.at(foil.material)), foil.thickness, tension);
+  const auto elastic = elastic_stretch(start.laws.at(foil.material).law, foil.thickness, tension);
   if (!elastic) {
     throw base::InputError(fmt::format("{}: foil `{}` cannot carry the prestress of {} N/m that its form was found for",
                                        to_string(foil.mark), foil.name, common::number(tension)));

@@ -12,34 +12,10 @@ namespace {
 
 using namespace solver::material;
 
-// St. Venant-Kirchhoff with directions of its own: principal axes of strain and stress differ.
-struct Orthotropic {
-  static constexpr std::array history_names = no_history;
-
-  Mat3 stiffness = Mat3::Zero();
-
-  Status evaluate(const Vec3& strain, const double*, double*, double, Response& r) const noexcept {
-    r.tangent = stiffness;
-    r.stress = r.tangent * strain;
-    r.energy = r.potential = 0.5 * r.stress.dot(strain);
-    return Status::ok;
-  }
-  double thickness_stretch(const Vec3&, const double*) const noexcept { return 1; }
-  Vec3 stress_free_strain(const double*) const noexcept { return Vec3::Zero(); }
-};
-
-// Moduli in Pa, plane stress (Jones 1999, Mechanics of Composite Materials, eq. 2.61).
-Orthotropic orthotropic(double e1, double e2, double nu12, double g12) {
-  const double nu21 = nu12 * e2 / e1;
-  const double c = 1 / (1 - nu12 * nu21);
-  Orthotropic law;
-  law.stiffness << c * e1, c * nu12 * e2, 0, c * nu12 * e2, c * e2, 0, 0, 0, g12;
-  return law;
-}
-
 const TensionField<StVenantKirchhoff> foil{{900e6, 0.45}};
 const TensionField<MooneyRivlin> rubber{{0.4e6, 0.1e6}};
-const TensionField<Orthotropic> fabric{orthotropic(1000e6, 300e6, 0.4, 50e6)};
+const TensionField<Orthotropic> fabric{{1000e6, 300e6, 0.4, 50e6}}; // principal axes of strain and stress differ
+const TensionField<Ogden> treloar{{3, {{{0.63e6, 1.3}, {0.0012e6, 5}, {-0.01e6, -2}}}}};
 
 base::Mat2 symmetric(double a, double b, double off) {
   base::Mat2 m;
@@ -81,15 +57,75 @@ void expect_tension_field(const TensionField<M>& law, const Vec3& strain) {
   EXPECT_NEAR(felt.energy, at.energy, 1e-13 * modulus * size * size);
 }
 
+// However else wrinkles lie, the law's potential is not less.
+template <Material M>
+void expect_least_potential(const TensionField<M>& law, const Vec3& strain, std::mt19937& random) {
+  const double least = answer(law, strain).potential;
+  const Vec3 best = law.relaxed(strain, nullptr).strain - strain;
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const double modulus = answer(law.law, Vec3::Zero()).tangent.cwiseAbs().maxCoeff();
+  const double size = strain.cwiseAbs().maxCoeff();
+  for (const double apart : {1e-3, 0.1, 1.0}) {
+    for (int i = 0; i < 5; ++i) {
+      const Vec3 other = best + apart * size * Vec3(unit(random), unit(random), unit(random));
+      if (principal(symmetric(other[0], other[1], 0.5 * other[2]))[0] < 0) continue;
+      Response r;
+      if (law.law.evaluate(strain + other, nullptr, nullptr, 0, r) != Status::ok) continue;
+      EXPECT_GE(r.potential, least - 1e-14 * modulus * size * size) << strain.transpose();
+    }
+  }
+}
+
 TEST(TensionField, CarriesNoCompressionAndWrinklesDoNoWork) {
   int wrinkled = 0;
   for_strains([&](const Vec3& strain) {
     expect_tension_field(foil, strain);
     expect_tension_field(rubber, strain);
     expect_tension_field(fabric, strain);
+    expect_tension_field(treloar, strain);
+    expect_tension_field(rubber, 20 * strain); // a fold of 0.4, a stretch of 1.3
+    expect_tension_field(treloar, 20 * strain);
     wrinkled += fabric.relaxed(strain, nullptr).surface == Surface::wrinkled ? 1 : 0;
   });
   EXPECT_GT(wrinkled, 500);
+}
+
+TEST(TensionField, HasTheLeastPotentialOfAllWrinkles) {
+  std::mt19937 random(7);
+  for_strains([&](const Vec3& strain) {
+    expect_least_potential(foil, strain, random);
+    expect_least_potential(fabric, strain, random);
+    expect_least_potential(treloar, 20 * strain, random);
+  });
+}
+
+// Counts how often it is asked.
+template <Material M>
+struct Counted : M {
+  static inline int asked = 0;
+  Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
+                  Response& response) const noexcept {
+    ++asked;
+    return M::evaluate(strain, old_history, new_history, dt, response);
+  }
+};
+
+template <Material M>
+void expect_few_evaluations(const M& law, double size, int most) {
+  const TensionField<Counted<M>> counted{{law}};
+  for_strains([&](const Vec3& strain) {
+    Counted<M>::asked = 0;
+    answer(counted, size * strain);
+    EXPECT_LE(Counted<M>::asked, most) << strain.transpose();
+  });
+}
+
+TEST(TensionField, AsksItsLawAFewTimes) {
+  expect_few_evaluations(foil.law, 1, 3); // plain, as wide as without stress, and where it is linear there is the goal
+  expect_few_evaluations(rubber.law, 1, 12);
+  expect_few_evaluations(rubber.law, 20, 12);
+  expect_few_evaluations(treloar.law, 20, 12);
+  expect_few_evaluations(fabric.law, 1, 20); // it turns
 }
 
 TEST(TensionField, OfAnIsotropicFoilIsTheClosedForm) {
@@ -164,6 +200,8 @@ TEST(TensionField, OfRubberHasItsConsistentTangentToo) {
                              strain_of(1.01, 0.9949, 1.1), strain_of(1.5, 1.2, 0.2)}) {
     EXPECT_LT(tangent_error(rubber, strain, 1e-5), 1e-8) << strain.transpose();
     EXPECT_LT(stress_error(rubber, strain, 1e-5), 1e-7) << strain.transpose();
+    EXPECT_LT(tangent_error(treloar, strain, 1e-5), 1e-8) << strain.transpose();
+    EXPECT_LT(stress_error(treloar, strain, 1e-5), 1e-7) << strain.transpose();
   }
 }
 
@@ -222,7 +260,8 @@ TEST(TensionField, NeverFailsHoweverTheFoilIsFolded) {
     for (const double width : {0.0, 1e-12, 1e-6, 0.1}) {
       for (const double length : {0.0, 1e-9, 0.5, 1 - 1e-12, 1.0, 1 + 1e-12, 1 + 1e-6, 1.2, 4.0}) {
         const Vec3 strain = strain_of(length, width, angle);
-        for (const Response& at : {answer(foil, strain), answer(rubber, strain), answer(fabric, strain)}) {
+        for (const Response& at :
+             {answer(foil, strain), answer(rubber, strain), answer(fabric, strain), answer(treloar, strain)}) {
           EXPECT_TRUE(at.stress.allFinite() && at.tangent.allFinite()) << length << " " << width;
         }
       }

@@ -137,6 +137,68 @@ TEST_F(MaterialBench, FitFindsAKnownBilinearLawAgain) {
   EXPECT_THAT(text_of("p.svg"), HasSubstr("test u"));
 }
 
+TEST_F(MaterialBench, WhatAFitPrintsIsAMaterial) {
+  std::string data = "strain_1 [%], stress_1 [MPa]\n";
+  for (int i = 0; i <= 80; ++i) data += fmt::format("{}, {}\n", 0.25 * i, bilinear(0.0025 * i));
+  file("u.csv", data);
+  const Outcome fit = pneuma("material m.yaml foil --data u.csv --fit 1");
+  file("fitted.yaml", fit.text.substr(fit.text.find("foil_1:\n")));
+  const Outcome run = pneuma("material fitted.yaml foil_1 --data u.csv --strain '20 %'");
+  ASSERT_EQ(run.code, 0) << run.text;
+  EXPECT_LT(number_after(run.text, "points): rms"), 1e-6) << run.text; // nine digits are printed
+  // of the elastic strain what the plastic one leaves
+  const double left = std::expm1(std::log1p(0.2) - bilinear(0.2) * 1.2 / 1100);
+  EXPECT_NEAR(number_after(run.text, "left, %") / (100 * left), 1, 5e-3); // three digits are printed
+  // and a material's own curve fits without a test
+  const Outcome own = pneuma("material fitted.yaml --fit 1 --strain '20 %'");
+  EXPECT_NEAR(number_after(own.text, "{stress: ") / 16, 1, 1e-6) << own.text;
+}
+
+TEST_F(MaterialBench, FoilsThatFlowAreStifferTheFasterTheyArePulled) {
+  // Perzyna, epsilon 1: in steady flow the stress exceeds the yield stress by its product with mu and the plastic rate;
+  // no hardening, small strain: S = 20 MPa (1 + 10 s x rate) once the elastic strain has settled
+  file("v.yaml", "foil: {law: j2, E: 1000 MPa, nu: 0.45, hardening: [{stress: 20 MPa, modulus: 0 MPa}], strain: small, "
+                 "viscosity: {model: perzyna, mu: 10 s, epsilon: 1}}\n");
+  const Outcome run = pneuma("material v.yaml --ratios 1:0 --rate 0.001,0.05 --strain '20 %' --csv v.csv --svg v.svg");
+  ASSERT_EQ(run.code, 0) << run.text;
+  EXPECT_THAT(run.text, HasSubstr("0.001 1/s"));
+  std::istringstream row(run.text.substr(run.text.find("\n        20") + 1));
+  double strain = 0, slow = 0, fast = 0;
+  row >> strain >> slow >> fast;
+  // d(Green-Lagrange)/dt = stretch x rate at the end; nominal stress = stretch x S; the law lags by 0.2 s of 4 s
+  EXPECT_NEAR(slow / (1.2 * 20 * (1 + 10 * 1.2 * 0.001)), 1, 2e-3);
+  EXPECT_NEAR(fast / (1.2 * 20 * (1 + 10 * 1.2 * 0.05)), 1, 2e-2);
+  EXPECT_TRUE(well_formed(text_of("v.svg")));
+  // its own curve as a test, by the times in the file: the fast one
+  std::istringstream lines(text_of("v.csv"));
+  std::string line, data = "time [s], strain_1 [-], stress_1 [MPa]\n";
+  while (std::getline(lines, line)) {
+    const std::regex fast_row("foil, uniaxial, 0.05, loading, ([^,]+), ([^,]+), [^,]+, ([^,]+), .*");
+    std::smatch cells;
+    if (std::regex_match(line, cells, fast_row))
+      data += fmt::format("{}, {}, {}\n", cells[1].str(), cells[2].str(), cells[3].str());
+  }
+  file("t.csv", data);
+  const Outcome against = pneuma("material v.yaml --ratios 1:0 --strain '20 %' --data t.csv");
+  EXPECT_LT(number_after(against.text, "101 points): rms"), 1e-5) << against.text; // nine digits are written
+}
+
+TEST_F(MaterialBench, ValuesFollowTheTemperatureWithinTheirTable) {
+  file("t.yaml", "foil: {law: elastic, E: 1000 MPa, nu: 0.45, temperature: [{at: 43 degC, E: 600 MPa}]}\n");
+  const auto stress = [&](const std::string& words) {
+    const Outcome run = pneuma("material t.yaml --ratios 1:0 " + words);
+    EXPECT_EQ(run.code, 0) << run.text;
+    return number_after(run.text, "\n        10");
+  };
+  EXPECT_NEAR(stress("") / (elastic(0.1) / 0.9), 1, 5e-4);
+  EXPECT_NEAR(stress("--temperature '33 degC'") / (elastic(0.1) / 0.9 * 0.8), 1, 5e-4);
+  const Outcome run = pneuma("material t.yaml --temperature '50 degC'");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.text, HasSubstr("23 to 43 degC"));
+  EXPECT_THAT(pneuma("material m.yaml foil --temperature '50 degC'").text,
+              HasSubstr("does not depend on the temperature"));
+}
+
 TEST_F(MaterialBench, WhatIsWrongIsSaidWithItsPlace) {
   const auto fails = [&](const std::string& words, const std::string& message) {
     const Outcome run = pneuma("material " + words);

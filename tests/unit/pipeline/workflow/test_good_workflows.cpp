@@ -408,8 +408,9 @@ TEST(GoodWorkflow, StressIsPrestressOverThickness) {
 
 TEST(GoodWorkflow, MaterialsComeFromFilesBesideIt) {
   const Folder folder;
-  folder.write("m/a.yaml",
-               "etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\nlater: {law: neo_hooke, C1: 1 MPa}\n");
+  folder.write(
+      "m/a.yaml",
+      "etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\nrubber: {law: neo_hooke, C1: 1 MPa}\n");
   folder.write("m/b.yaml", "other: {law: elastic, E: 1 GPa, nu: 0.4}\n");
   const std::string text =
       replaced(example, "materials:\n  etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\n",

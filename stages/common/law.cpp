@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/common/law.h"
+
+#include <array>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "geometry/base/errors.h"
+#include "geometry/base/log.h"
+#include "stages/common/summary.h"
+
+namespace pneuma::stages::common {
+
+namespace {
+
+namespace workflow = pipeline::workflow;
+namespace material = solver::material;
+
+constexpr double megapascal = 1e6;
+constexpr double freezing = 273.15; // K
+
+[[noreturn]] void refuse(const workflow::Material& m, const std::string& what) {
+  throw base::InputError(fmt::format("{}: material `{}`: {}", to_string(m.mark), m.name, what));
+}
+
+material::Law with_tension_field(const material::Law& law) {
+  return std::visit(
+      []<class L>(const L& taut) -> material::Law {
+        if constexpr (std::is_constructible_v<material::Law, material::TensionField<L>>) {
+          return material::TensionField<L>{taut};
+        } else {
+          return taut; // has one
+        }
+      },
+      law);
+}
+
+// d stress / d plastic strain of a branch whose d stress / d strain under tension is given: 1/Et = 1/E + 1/K.
+double plastic_modulus(double tangent, double E) {
+  return E * tangent / (E - tangent);
+}
+
+// What makes the laws of one set of materials at one temperature.
+class Maker {
+public:
+  Maker(const std::map<std::string, workflow::Material>& materials, double temperature)
+      : materials_(materials), temperature_(temperature) {}
+
+  // Without tension field.
+  MaterialLaw make(const workflow::Material& m) const {
+    const auto range = workflow::temperatures_of(m);
+    if (range && !(temperature_ >= (*range)[0] && temperature_ <= (*range)[1])) {
+      refuse(m, fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", (*range)[0] - freezing,
+                            (*range)[1] - freezing, temperature_ - freezing));
+    }
+    return std::visit([&](const auto& law) { return make(m, law); }, workflow::law_at(m, temperature_));
+  }
+
+private:
+  MaterialLaw make(const workflow::Material&, const workflow::ElasticLaw& law) const {
+    return {material::StVenantKirchhoff{law.E, law.nu}, {}, {}};
+  }
+
+  MaterialLaw make(const workflow::Material&, const workflow::OrthotropicLaw& law) const {
+    return {material::Orthotropic{law.E1, law.E2, law.nu12, law.G12}, {}, {}};
+  }
+
+  MaterialLaw make(const workflow::Material&, const workflow::MooneyRivlinLaw& law) const {
+    return {material::MooneyRivlin{law.C1, law.C2}, {}, {}};
+  }
+
+  MaterialLaw make(const workflow::Material& m, const workflow::OgdenLaw& law) const {
+    material::Ogden ogden;
+    for (const workflow::OgdenLaw::Term& term : law.terms) {
+      ogden.terms[static_cast<std::size_t>(ogden.count++)] = {term.mu, term.alpha};
+    }
+    // a foil is not stretched further, and constants from tests seldom hold beyond
+    constexpr double least = 0.25, most = 4;
+    constexpr const char* names[] = {"uniaxial tension", "equibiaxial tension", "pure shear"};
+    std::vector<std::string> where;
+    for (const material::Instability& found : material::instabilities(ogden, least, most)) {
+      where.push_back(fmt::format("in {} at stretches from {:.3g} to {:.3g}",
+                                  names[static_cast<std::size_t>(found.pull)], found.from, found.to));
+    }
+    if (!where.empty()) {
+      refuse(m, fmt::format("its Ogden constants are unstable, more strain needs less stress, {}; terms whose mu and "
+                            "alpha have one sign are stable",
+                            fmt::join(where, ", ")));
+    }
+    return {ogden, {}, {}};
+  }
+
+  MaterialLaw make(const workflow::Material& m, const workflow::J2Law& law) const {
+    std::vector<material::HardeningBranch> branches;
+    for (const workflow::HardeningBranch& branch : law.hardening) {
+      const bool is_plastic = law.modulus == workflow::ModulusKind::plastic;
+      branches.push_back({branch.stress, is_plastic ? branch.modulus : plastic_modulus(branch.modulus, law.E)});
+    }
+    material::Flow flow;
+    const std::optional<material::Hardening> hardening = material::piecewise_linear(branches);
+    if (!hardening) {
+      refuse(m, fmt::format("at {:.4g} degC, between two temperatures of its table, a branch of the hardening does not "
+                            "lead to the next",
+                            temperature_ - freezing));
+    }
+    flow.hardening = *hardening;
+    if (law.viscosity) {
+      const bool is_peric = law.viscosity->model == workflow::ViscositySettings::Model::peric;
+      flow.viscosity = {is_peric ? material::Overstress::peric : material::Overstress::perzyna, law.viscosity->mu,
+                        law.viscosity->epsilon, law.viscosity->threshold};
+    }
+    const material::Elasticity elasticity{law.E, law.nu};
+    if (law.logarithmic) return {material::Logarithmic{elasticity, flow}, {}, {}};
+    return {material::J2{elasticity, flow}, {}, {}};
+  }
+
+  MaterialLaw make(const workflow::Material& m, const workflow::TableLaw& law) const {
+    material::NurbsOptions options;
+    options.net = law.net;
+    options.degree = law.degree;
+    options.potential = law.potential;
+    options.smoothing = law.smoothing;
+    if (law.range) options.range = material::StrainRange{(*law.range)[0], (*law.range)[1]};
+    std::vector<material::StressPoint> points;
+    for (const workflow::TableLaw::Point& p : law.points) {
+      points.push_back({p.strain_1, p.strain_2, p.stress_1, p.stress_2, p.weight});
+    }
+    std::vector<material::ShearPoint> shear;
+    for (const workflow::TableLaw::ShearPoint& p : law.shear_points) shear.push_back({p.strain, p.stress, p.weight});
+    std::optional<material::Law> model;
+    if (!law.fit_to.empty()) model = make(materials_.at(law.fit_to)).law;
+    try {
+      if (law.kind == workflow::TableLaw::Kind::pd_nurbs) {
+        const material::PdFit fit =
+            model ? material::fit_pd_nurbs(*model, options, 0, points) : material::fit_pd_nurbs(points, options);
+        return {material::PdNurbs{fit.table, law.goes_on, law.nu}, fit.report, {}};
+      }
+      const material::LeFit fit =
+          model ? material::fit_le_nurbs(*model, options) : material::fit_le_nurbs(points, shear, options);
+      return {material::LeNurbs{fit.table, law.goes_on, law.nu}, fit.report, fit.shear_report};
+    } catch (const std::invalid_argument& error) {
+      refuse(m, fmt::format("its table cannot be fitted: {}", error.what()));
+    }
+  }
+
+  const std::map<std::string, workflow::Material>& materials_;
+  double temperature_;
+};
+
+// "rms 0.02 MPa, at most 0.1 MPa (0.4 % of 25 MPa) at strains (0.1, 0.02)"
+std::string text_of(const material::FitReport& fit) {
+  std::string text =
+      fmt::format("rms {:.2g} MPa, at most {:.2g} MPa ({:.2g} % of {:.3g} MPa) at strains ({:.3g}, {:.3g})",
+                  fit.rms / megapascal, fit.max / megapascal, 100 * fit.max / fit.largest_stress,
+                  fit.largest_stress / megapascal, fit.where[0], fit.where[1]);
+  if (fit.uncovered > 0) text += fmt::format("; {:.0f} % of the table holds no point", 100 * fit.uncovered);
+  if (fit.integrability_defect > 0) {
+    text += fmt::format("; without a potential, integrability defect {:.2g}", fit.integrability_defect);
+  }
+  return text;
+}
+
+std::string not_monotone(const std::string& name, const material::FitReport& fit) {
+  return fmt::format("the stress of the table `{}` does not rise with the strain everywhere, least at strains ({:.3g}, "
+                     "{:.3g}): more weight on smoothing, a coarser net or more points may help",
+                     name, fit.not_monotone[0], fit.not_monotone[1]);
+}
+
+} // namespace
+
+MaterialLaw law_of(const std::map<std::string, workflow::Material>& materials, const std::string& name,
+                   double temperature) {
+  const workflow::Material& m = materials.at(name);
+  MaterialLaw made = Maker(materials, temperature).make(m);
+  if (m.tension_field) made.law = with_tension_field(made.law);
+  return made;
+}
+
+void say_fit(const std::string& name, const MaterialLaw& made) {
+  if (made.fit) base::say(fmt::format("table of `{}`: {}", name, text_of(*made.fit)));
+  if (made.shear_fit) base::say(fmt::format("its shear: {}", text_of(*made.shear_fit)));
+  if (made.fit && !made.fit->monotone) base::warn(not_monotone(name, *made.fit));
+}
+
+MaterialLaws laws_of(const workflow::Workflow& workflow) {
+  MaterialLaws laws;
+  for (const workflow::FoilSettings& foil : workflow.cushion.foils) {
+    const auto [at, is_new] = laws.try_emplace(foil.material);
+    if (!is_new) continue;
+    at->second = law_of(workflow.materials, foil.material, workflow.site.temperature);
+    say_fit(foil.material, at->second);
+  }
+  return laws;
+}
+
+void summarize(const MaterialLaws& laws, Summary& summary) {
+  for (const auto& [name, made] : laws) {
+    const std::pair<const char*, const std::optional<material::FitReport>*> reports[] = {
+        {"fit", &made.fit}, {"shear_fit", &made.shear_fit}};
+    for (const auto& [what, report] : reports) {
+      if (!*report) continue;
+      const material::FitReport& fit = **report;
+      const std::string key = fmt::format("materials.{}.{}.", name, what);
+      summary.set(key + "rms", fit.rms);
+      summary.set(key + "max", fit.max);
+      summary.set(key + "largest_stress", fit.largest_stress);
+      summary.set(key + "strain_1", fit.where[0]);
+      summary.set(key + "strain_2", fit.where[1]);
+      summary.set(key + "uncovered", fit.uncovered);
+      summary.set(key + "monotone", fit.monotone);
+      summary.set(key + "integrability_defect", fit.integrability_defect);
+    }
+    if (made.fit && !made.fit->monotone) summary.append("warnings", not_monotone(name, *made.fit));
+  }
+}
+
+} // namespace pneuma::stages::common

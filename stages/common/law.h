@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "pipeline/workflow/settings.h"
+#include "solver/material/nurbs_fit.h"
+
+namespace pneuma::stages::common {
+
+class Summary;
+
+// A material as the solver takes it, and how its table, if it is one, follows what it was fitted to.
+struct MaterialLaw {
+  solver::material::Law law;
+  std::optional<solver::material::FitReport> fit, shear_fit; // shear: of LE-NURBS
+};
+
+using MaterialLaws = std::map<std::string, MaterialLaw>; // by the name of the material
+
+// The law of one of these materials at a temperature, K; its table is fitted, which takes a second or less. Throws
+// InputError, with the place in the user's file, where the material has no values for the temperature, a table cannot
+// be fitted to its points or a foil of Ogden's law is unstable at stretches from 1/4 to 4.
+MaterialLaw law_of(const std::map<std::string, pipeline::workflow::Material>& materials, const std::string& name,
+                   double temperature);
+
+// Says how the table of a material, if it is one, was fitted.
+void say_fit(const std::string& name, const MaterialLaw& made);
+
+// Laws of all foils at the site's temperature, each made once. Says how tables are fitted.
+MaterialLaws laws_of(const pipeline::workflow::Workflow& workflow);
+
+// Writes the keys materials.<name>.fit.* of tables, and warnings where one does not rise with the strain.
+void summarize(const MaterialLaws& laws, Summary& summary);
+
+} // namespace pneuma::stages::common

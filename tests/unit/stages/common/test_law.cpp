@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the settings of a material to the solver's law: values, moduli, temperatures, tables.
+#include <gmock/gmock.h>
+
+#include "geometry/base/errors.h"
+#include "stages/common/law.h"
+
+namespace pneuma::stages::common {
+namespace {
+
+using base::Vec3;
+using pipeline::workflow::Material;
+using solver::material::Response;
+using testing::HasSubstr;
+namespace workflow = pipeline::workflow;
+
+constexpr double room = 296.15; // K
+
+Material material_of(workflow::MaterialLaw law) {
+  Material material;
+  material.name = "foil";
+  material.mark = {"etfe.yaml", 3, 1};
+  material.law = std::move(law);
+  return material;
+}
+
+MaterialLaw made_of(const Material& material, double temperature = room) {
+  return law_of({{material.name, material}}, material.name, temperature);
+}
+
+Response answer(const solver::material::Law& law, const Vec3& strain) {
+  std::vector<double> old_history(static_cast<std::size_t>(solver::material::history_components(law)) + 1, 0.0);
+  std::vector<double> new_history = old_history;
+  solver::material::Batch batch;
+  batch.count = 1;
+  batch.strain[0] = strain;
+  batch.old_history = old_history.data();
+  batch.new_history = new_history.data();
+  EXPECT_EQ(solver::material::evaluate(law, batch), -1);
+  return batch.response[0];
+}
+
+workflow::J2Law etfe() {
+  workflow::J2Law law;
+  law.E = 900e6;
+  law.nu = 0.45;
+  law.hardening = {{15e6, 72e6}, {21e6, 40e6}};
+  return law;
+}
+
+// What the law does uniaxially is E e, then sigma_y + K alpha, K the plastic modulus; S22 = 0 at the returned strain.
+double uniaxial_stress(const solver::material::Law& law, double strain) {
+  Vec3 e(strain, -0.45 * strain, 0);
+  for (int i = 0; i < 50; ++i) {
+    const Response r = answer(law, e);
+    e[1] -= r.stress[1] / r.tangent(1, 1);
+  }
+  return answer(law, e).stress[0];
+}
+
+TEST(Law, EveryKindOfSettingsHasItsLawAndItsTensionField) {
+  const std::vector<workflow::MaterialLaw> kinds = {
+      workflow::ElasticLaw{9e8, 0.45}, workflow::OrthotropicLaw{9e8, 8e8, 0.4, 3e8}, etfe(),
+      workflow::OgdenLaw{{{6e5, 1.3}, {-1e4, -2}}}, workflow::MooneyRivlinLaw{25e6, 7e6}};
+  for (const workflow::MaterialLaw& kind : kinds) {
+    Material material = material_of(kind);
+    const solver::material::Law taut = made_of(material).law;
+    material.tension_field = true;
+    const solver::material::Law field = made_of(material).law;
+    EXPECT_FALSE(solver::material::has_tension_field(taut)) << kind.index();
+    EXPECT_TRUE(solver::material::has_tension_field(field)) << kind.index();
+    const Vec3 stretched(0.01, 0.005, 0.002);
+    EXPECT_EQ(answer(taut, stretched).stress, answer(field, stretched).stress) << kind.index();
+    EXPECT_EQ(answer(field, Vec3(-0.01, -0.02, 0)).stress, Vec3::Zero()) << kind.index();
+  }
+}
+
+TEST(Law, OrthotropicValuesStandWhereTheyBelong) {
+  const Response r =
+      answer(made_of(material_of(workflow::OrthotropicLaw{9e8, 4e8, 0.3, 2e8})).law, Vec3(1e-3, 0, 1e-3));
+  const double c = 1 / (1 - 0.09 * 4 / 9); // 1 / (1 - nu12^2 E2 / E1)
+  EXPECT_NEAR(r.stress[0], c * 9e5, 1e-6);
+  EXPECT_NEAR(r.stress[1], c * 0.3 * 4e5, 1e-6);
+  EXPECT_NEAR(r.stress[2], 2e5, 1e-6);
+}
+
+TEST(Law, PlasticAndTangentModulusAreTheSameFoil) {
+  workflow::J2Law plastic = etfe();
+  plastic.logarithmic = false;
+  workflow::J2Law tangent = plastic;
+  tangent.modulus = workflow::ModulusKind::tangent;
+  for (workflow::HardeningBranch& branch : tangent.hardening) {
+    branch.modulus = plastic.E * branch.modulus / (plastic.E + branch.modulus);
+  }
+  const solver::material::Law a = made_of(material_of(plastic)).law, b = made_of(material_of(tangent)).law;
+  for (const double strain : {0.01, 0.05, 0.15}) {
+    EXPECT_NEAR(uniaxial_stress(a, strain), uniaxial_stress(b, strain), 1e-4) << strain; // Pa, to rounding
+  }
+  // on the first branch of the tangent law d stress / d strain is what its user wrote
+  const double slope = (uniaxial_stress(b, 0.04) - uniaxial_stress(b, 0.03)) / 0.01;
+  EXPECT_NEAR(slope, tangent.hardening[0].modulus, 1); // Pa: linear there
+}
+
+TEST(Law, SmallAndLogarithmicStrainAreTwoLaws) {
+  workflow::J2Law law = etfe();
+  EXPECT_TRUE(std::holds_alternative<solver::material::Logarithmic>(made_of(material_of(law)).law));
+  law.logarithmic = false;
+  EXPECT_TRUE(std::holds_alternative<solver::material::J2>(made_of(material_of(law)).law));
+}
+
+TEST(Law, ViscosityMakesItRateDependent) {
+  workflow::J2Law law = etfe();
+  EXPECT_FALSE(solver::material::is_rate_dependent(made_of(material_of(law)).law));
+  law.viscosity = workflow::ViscositySettings{workflow::ViscositySettings::Model::perzyna, 10, 0.5, 1.5e6};
+  const solver::material::Law made = made_of(material_of(law)).law;
+  EXPECT_TRUE(solver::material::is_rate_dependent(made));
+  const solver::material::Viscosity& viscosity = std::get<solver::material::Logarithmic>(made).flow.viscosity;
+  EXPECT_EQ(viscosity.model, solver::material::Overstress::perzyna);
+  EXPECT_EQ(viscosity.mu, 10);
+  EXPECT_EQ(viscosity.epsilon, 0.5);
+  EXPECT_EQ(viscosity.threshold, 1.5e6);
+}
+
+TEST(Law, TakesItsValuesAtTheTemperature) {
+  Material material = material_of(workflow::ElasticLaw{9e8, 0.45});
+  material.other[room + 20] = workflow::ElasticLaw{7e8, 0.43};
+  const auto made = std::get<solver::material::StVenantKirchhoff>(made_of(material, room + 5).law);
+  EXPECT_DOUBLE_EQ(made.youngs_modulus, 8.5e8);
+  EXPECT_DOUBLE_EQ(made.poissons_ratio, 0.445);
+}
+
+template <class F>
+std::string message_of(const F& action) {
+  try {
+    action();
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(BadLaw, OutsideTheTemperaturesOfItsTableIsToldWithItsPlace) {
+  Material material = material_of(workflow::ElasticLaw{9e8, 0.45});
+  material.other[273.15] = workflow::ElasticLaw{1e9, 0.45};
+  EXPECT_EQ(message_of([&] { made_of(material, room + 7); }),
+            "etfe.yaml:3:1: material `foil`: its values are for 0 to 23 degC, not 30 degC");
+}
+
+TEST(BadLaw, UnstableOgdenConstantsAreToldWithWhereTheyAre) {
+  const Material material = material_of(workflow::OgdenLaw{{{6e6, 2}, {-1e6, 4}}});
+  EXPECT_THAT(message_of([&] { made_of(material); }),
+              HasSubstr("etfe.yaml:3:1: material `foil`: its Ogden constants are unstable, more strain needs less "
+                        "stress, in uniaxial tension at stretches from 0.25 to 0.333, "));
+}
+
+TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
+  workflow::TableLaw law;
+  law.points = {{0.01, 0.01, 9e6, 9e6, 1}, {0.01, 0.01, 9e6, 9e6, 1}};
+  law.range = {-0.01, 0.02};
+  EXPECT_THAT(message_of([&] { made_of(material_of(law)); }),
+              HasSubstr("etfe.yaml:3:1: material `foil`: its table cannot be fitted: "));
+}
+
+TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
+  workflow::TableLaw table;
+  table.fit_to = "model";
+  table.range = {-0.05, 0.3};
+  Material model = material_of(workflow::MooneyRivlinLaw{25e6, 7e6});
+  model.name = "model";
+  for (const auto kind : {workflow::TableLaw::Kind::pd_nurbs, workflow::TableLaw::Kind::le_nurbs}) {
+    table.kind = kind;
+    Material material = material_of(table);
+    material.tension_field = true;
+    const MaterialLaw made = law_of({{"foil", material}, {"model", model}}, "foil", room);
+    ASSERT_TRUE(made.fit);
+    EXPECT_EQ(made.shear_fit.has_value(), kind == workflow::TableLaw::Kind::le_nurbs);
+    EXPECT_LT(made.fit->max, 1e-3 * made.fit->largest_stress); // a smooth law, 25 x 25 control points
+    EXPECT_TRUE(made.fit->monotone);
+    EXPECT_TRUE(solver::material::has_tension_field(made.law));
+    const Vec3 strain(0.2, 0.1, 0);
+    const Vec3 exact = answer(made_of(model).law, strain).stress;
+    EXPECT_LT((answer(made.law, strain).stress - exact).norm(), 1e-3 * exact.norm());
+  }
+}
+
+} // namespace
+} // namespace pneuma::stages::common
