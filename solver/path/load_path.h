@@ -60,10 +60,9 @@ struct LoadPathOptions {
 };
 
 // Load control: along the schedule, whole parts first, cut back by four on any failure, doubled after easy success;
-// foils that flow with time decide on its steps, too (flow_tolerance); where edges move, a step starts along the tangent
-// of the last one. `accepted` sees every accepted step, with the
-// system evaluated there; `configuration` ends as the last accepted one. Where it gets stuck it looks for a limit point
-// just ahead and names it.
+// foils that flow with time decide on its steps, too (flow_tolerance); where edges move, a step starts along the
+// tangent of the last one. `accepted` sees every accepted step, with the system evaluated there; `configuration` ends
+// as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report = {});
 
