@@ -31,6 +31,7 @@ struct J2 {
     double sum = elasticity.sum_modulus() * (elastic[0] + elastic[1]);
     double difference = two_g * (elastic[0] - elastic[1]);
     double shear = 0.5 * two_g * elastic[2];
+    if (!std::isfinite(sum * sum + difference * difference + 4 * shear * shear)) return Status::failed; // a wild step
     const double alpha = old_history[3];
     const double dissipated = old_history[4];
     const double difference_squared = difference * difference + 4 * shear * shear;

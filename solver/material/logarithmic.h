@@ -46,6 +46,7 @@ struct Logarithmic {
     const double two_g = 2 * elasticity.shear_modulus();
     double sum = elasticity.sum_modulus() * (2 * log.second + log.difference); // T_1 + T_2
     double difference = two_g * log.difference;
+    if (!std::isfinite(sum * sum + difference * difference)) return Status::failed; // of a step gone wild
     const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference * difference, alpha, dt);
     sum *= step.sum;
     difference *= step.difference;

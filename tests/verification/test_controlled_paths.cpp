@@ -167,6 +167,48 @@ TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
   EXPECT_EQ(newton.tangent().stability(at, nullptr).load_held, 0);
 }
 
+TEST(ControlledPath, MovedEdgeIsFollowedByEveryControl) {
+  // a sheet between a held and a moved edge, which narrows in its middle
+  tests::Cushion c;
+  c.element = ElementType::Q4;
+  c.divisions = {8, 4};
+  c.heights = {0};
+  assembly::Model model = tests::model_of(c, 0);
+  model.move = VecX::Zero(static_cast<Eigen::Index>(3 * model.mesh.nodes.size()));
+  Index middle = -1;
+  for (std::size_t i = 0; i < model.mesh.nodes.size(); ++i) {
+    const Vec3& x = model.mesh.nodes[i];
+    const bool end = std::abs(std::abs(x.x()) - 1) < 1e-9;
+    model.fixed[3 * i] = model.fixed[3 * i + 1] = end ? 1 : 0;
+    model.fixed[3 * i + 2] = 1;
+    if (end && x.x() > 0) model.move[static_cast<Eigen::Index>(3 * i)] = 0.4;
+    if (std::abs(x.x()) < 1e-9 && x.y() > 0.5 - 1e-9) middle = static_cast<Index>(i);
+  }
+  ASSERT_GE(middle, 0);
+  const tests::Solved by_load(model, 4);
+  ASSERT_TRUE(by_load.converged()) << by_load.path.reason;
+  const double narrowed = 0.5 - by_load.at.positions[static_cast<std::size_t>(middle)].y();
+  EXPECT_GT(narrowed, 0.05);
+  path::ArcLengthPath arc;
+  arc.load_factor = 1;
+  const Index moved = model.mesh.blocks[0].connectivity[model.mesh.blocks[0].connectivity.size() - 2];
+  ASSERT_EQ(model.move[3 * moved], 0.4);
+  for (const path::PathControl& control :
+       {path::PathControl(path::DisplacementPath{path::displacement_of(middle, Vec3(0, -1, 0)), narrowed}),
+        path::PathControl(path::DisplacementPath{path::displacement_of(moved, Vec3(1, 0, 0)), 0.4}),
+        path::PathControl(arc)}) {
+    assembly::System system(model, 1);
+    path::Newton newton(system, {});
+    assembly::Configuration at = tests::start_of(model);
+    const path::PathResult result = path::follow_control(system, newton, at, control, {}, {}, tests::tell);
+    ASSERT_EQ(result.end, path::PathEnd::reached) << control.index() << result.reason;
+    EXPECT_NEAR(result.load_factor, 1, 1e-7);
+    for (std::size_t i = 0; i < at.positions.size(); ++i) {
+      EXPECT_LT((at.positions[i] - by_load.at.positions[i]).norm(), 1e-7);
+    }
+  }
+}
+
 // --- a spherical balloon, one octant by symmetry
 // ----------------------------------------------------------------------------
 

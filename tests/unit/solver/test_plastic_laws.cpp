@@ -319,6 +319,28 @@ TEST(J2, ThicknessStrainIsElasticAndPlasticWithoutVolumeOfTheLatter) {
   EXPECT_NEAR(path.thickness(strain), std::sqrt(1 + 2 * e33), 1e-15);
 }
 
+TEST(PlasticLaws, FailRatherThanOverflow) {
+  const HardeningBranch branches[] = {{14e6, 120e6}, {32e6, 30e6}};
+  const Flow flow{piecewise_linear(branches).value(), {}};
+  const Law laws[] = {J2{{417e6, 0.45}, flow}, Logarithmic{{417e6, 0.45}, flow}};
+  for (const Law& law : laws) {
+    for (const double size : {1e3, 1e100, 1e140, 1e155, 1e200, 1e308, std::numeric_limits<double>::infinity()}) {
+      for (const Vec3& direction : {Vec3(1, 0.3, 0.2), Vec3(0.967, 1, -0.033), Vec3(1, 1, 0), Vec3(0.2, 0.1, 0.01)}) {
+        const std::array<double, 5> virgin{};
+        std::array<double, 5> history{};
+        Batch batch;
+        batch.count = 1;
+        batch.strain[0] = size * direction;
+        batch.old_history = virgin.data();
+        batch.new_history = history.data();
+        if (evaluate(law, batch) >= 0) continue;
+        EXPECT_TRUE(batch.response[0].stress.allFinite()) << size;
+        EXPECT_TRUE(std::isfinite(history[3])) << size;
+      }
+    }
+  }
+}
+
 TEST(PlasticLaws, AgreeAtSmallStrainsToSecondOrder) {
   // the same path of strain, at a half and a quarter of the size with the yield stress in proportion
   std::vector<double> apart;

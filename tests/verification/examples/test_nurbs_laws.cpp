@@ -129,7 +129,7 @@ TEST(PdNurbs, FollowsMooneyRivlinLikeTables43And44) {
       const PlainNewton newton = plain_newton(system, at, 1e-6, 20);
       ASSERT_TRUE(newton.converged);
       most = std::max(most, newton.norms.size());
-      norms += norms.empty() ? "norms, m:" : " |";
+      norms += norms.empty() ? "norms, m:" : " /";
       for (const double n : newton.norms) norms += fmt::format(" {:.2e}", n);
     }
     expect({"B6", fmt::format("most iterations of a step, net of {}", net.size), net.iterations, "Mooney-Rivlin itself",

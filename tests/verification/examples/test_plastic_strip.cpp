@@ -86,7 +86,7 @@ TEST(PlasticStrip, IsPulledInOneStepWherePlainNewtonNeedsMany) {
   ASSERT_TRUE(one.reached()) << one.path.reason;
   expect({"B1", "force at 0.20 mm in one step, kN", "", "the same in 20 steps", many.points.back().force / kN,
           one.points.back().force / kN, 0.003, "plastic strain in one backward Euler step turns with the path", mesh,
-          one.iterations(), fmt::format("{} steps were taken", one.steps)});
+          one.iterations(), fmt::format("steps taken: {}", one.steps)});
   // without a predictor the elements beside the end take all its move, and yield
   const auto pulls = [&](double step, bool along_the_tangent) {
     assembly::System system(pulled_strip(perforated_strip, small_strain(), displacement), 1);
