@@ -18,7 +18,7 @@ PulledStrip::PulledStrip(const PerforatedSheet& sheet, const material::Law& law,
   const std::vector<Index> end = nodes_at(system.model().mesh, 1, sheet.height);
   path::LoadPathOptions options;
   options.parts = parts;
-  options.flow_tolerance = flow_tolerance;
+  options.flow.error = flow_tolerance;
   options.schedule = {{0, 0}, {duration, 1}};
   path = path::follow_load(
       system, newton, at, options,
