@@ -196,6 +196,7 @@ private:
       flow_excess_ = outcome.converged ? options_.flow.excess(system_.flow()) : 0;
       const double planned = std::abs(goal->to - goal->from);
       if (flow_excess_ > 1 && planned > *shortest) {
+        system_.evaluate_accepted(at_, true);
         length_ = planned * FlowLimits::factor(flow_excess_);
         continue;
       }

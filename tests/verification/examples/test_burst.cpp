@@ -77,10 +77,9 @@ TEST_P(BurstOfEveryTriangle, ControlsOfVolumeDisplacementAndArcLengthAgree) {
     const Burst b(burst_disc(GetParam(), divisions, large_strain()), control, twenty_parts());
     ASSERT_TRUE(b.reached() && b.peak) << b.path.reason;
     expect({"B11", fmt::format("peak pressure by {}, kPa", is_arc ? "arc length" : "volume"), "32.9", "by displacement",
-            by_height.peak->pressure / kPa, b.peak->pressure / kPa, is_arc ? 1e-6 : 1e-3,
-            is_arc ? "its parts end at the same deflections: the same steps, each to 1e-9 of the forces"
-                   : "plastic steps of other lengths; 20 or 80 of them differ by 0.14 %",
-            mesh, b.iterations()});
+            by_height.peak->pressure / kPa, b.peak->pressure / kPa, 1e-4,
+            "plastic steps of other lengths, none beyond 2 % of strain: half of that moves the peak by 1.2e-4", mesh,
+            b.iterations()});
     EXPECT_LT(b.points.back().pressure, 0.95 * b.peak->pressure);
   }
 }
