@@ -121,7 +121,7 @@ void Builder::need(const Value& material, const std::string& key, const std::str
 Material Builder::material_of(const std::string& name, const Value& value) {
   Material material;
   material.name = name;
-  material.mark = value.key;
+  material.mark = is_stage_file_ ? value.mark : value.key; // of keys stage.yaml does not say where the user has them
   material.law = law_of(value, nullptr);
   material.at = number_of(value, "at", material.at);
   if (std::holds_alternative<TableLaw>(material.law)) tables_[name] = value;

@@ -3,27 +3,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <variant>
 #include <vector>
 
+#include "solver/analytical/stretch_law.h"
+
 namespace pneuma::solver::analytical {
-
-// Elastic laws by their energy per nominal volume, W(l1, l2), of the two stretches in the plane; plane stress.
-
-// W = E / (2 (1 - nu^2)) (e1^2 + e2^2 + 2 nu e1 e2), e = (l^2 - 1) / 2 (Holzapfel 2000, eq. 6.151, with the thickness
-// stress condensed).
-struct SaintVenantKirchhoff {
-  double youngs_modulus = 0; // Pa
-  double poissons_ratio = 0;
-};
-
-// W = C1 (I1 - 3) + C2 (I2 - 3), incompressible: l3 = 1 / (l1 l2) (Mooney 1940, Rivlin 1948). Neo-Hookean with C2 = 0;
-// the shear modulus is 2 (C1 + C2).
-struct MooneyRivlin {
-  double c1 = 0, c2 = 0; // Pa
-};
-
-using StretchLaw = std::variant<SaintVenantKirchhoff, MooneyRivlin>;
 
 // A sphere, or a piece far from the ends of a long tube: its ends held apart at their nominal distance, or closed by
 // caps that the pressure pushes apart.

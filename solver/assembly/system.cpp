@@ -445,18 +445,22 @@ void System::restore(Memory memory) {
   accepted_time_step_ = memory.accepted_time_step;
 }
 
-double System::flow_error() const {
-  double largest = 0;
+System::Flow System::flow() const {
+  Flow largest;
   for (std::size_t f = 0; f < foils_.size(); ++f) {
     const material::Law& law = foils_[f].membrane.law;
-    if (!material::is_rate_dependent(law)) continue;
     const std::span<const std::string_view> names = material::history_names(law);
-    const auto which = std::ranges::find(names, material::equivalent_plastic_strain) - names.begin();
+    const auto which =
+        static_cast<std::size_t>(std::ranges::find(names, material::equivalent_plastic_strain) - names.begin());
+    if (which == names.size()) continue;
+    const bool in_time = material::is_rate_dependent(law) && time_step_ > 0;
     const double ratio = accepted_time_step_ > 0 ? time_step_ / accepted_time_step_ : 0.0;
-    for (auto i = static_cast<std::size_t>(which); i < accepted_[f].size(); i += names.size()) {
-      const double flow = new_[f][i] - accepted_[f][i];
+    for (std::size_t i = which; i < accepted_[f].size(); i += names.size()) {
+      const double growth = new_[f][i] - accepted_[f][i];
+      largest.growth = std::max(largest.growth, growth);
+      if (!in_time) continue;
       const double foreseen = ratio * (accepted_[f][i] - before_[f][i]);
-      largest = std::max(largest, 0.5 * std::abs(flow - foreseen));
+      largest.error = std::max(largest.error, 0.5 * std::abs(growth - foreseen));
     }
   }
   return largest;

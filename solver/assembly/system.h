@@ -105,10 +105,14 @@ public:
   };
   Memory memory() const { return {before_, accepted_, time_step_, accepted_time_step_}; }
   void restore(Memory memory);
-  // Largest error of the flow in the last evaluated step, from the change of its rate since the step before, as
-  // equivalent plastic strain, -; 0 where no law flows with time. Backward Euler's local error is dt^2/2 times that of
-  // the rate (Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.7).
-  double flow_error() const;
+  // Plastic flow in the last evaluated step, the largest of all points, as equivalent plastic strain, -.
+  struct Flow {
+    double growth = 0;
+    // From the change of its rate since the step before, of laws that flow with time: backward Euler's local error is
+    // dt^2/2 times that of the rate (Hairer, Norsett, Wanner 1993, Solving ODEs I, sec. II.7).
+    double error = 0;
+  };
+  Flow flow() const;
 
 private:
   std::string why_failed(std::size_t foil, const Configuration& configuration) const;

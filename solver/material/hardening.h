@@ -44,7 +44,7 @@ struct Hardening {
     for (const Branch* b = branch(alpha);; ++b) {
       const double to = b == last ? increment : std::min(increment, b[1].alpha - alpha);
       take(from, to, stress(*b, alpha + from), b->modulus);
-      if (to == increment) return;
+      if (b == last || to == increment) return;
       from = to;
     }
   }

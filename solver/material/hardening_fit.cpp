@@ -241,12 +241,19 @@ std::optional<HardeningFit> fit_hardening(std::span<const CurvePoint> points, in
   if (branches < 1 || static_cast<int>(grid.size()) < 2 * branches) return std::nullopt;
   const Fit fit(points, softening);
   Polygon polygon;
+  double rounding = 0; // cost of an exact fit
+  for (const CurvePoint& point : points) rounding += 1e-24 * point.weight * point.stress * point.stress;
   for (int i = 0; i < branches; ++i) {
-    polygon = with_one_more(fit, polygon.corners, grid);
-    if (!std::isfinite(polygon.cost)) return std::nullopt;
-    exchange(fit, grid, polygon);
-    fit.move_together(polygon);
+    Polygon next = with_one_more(fit, polygon.corners, grid);
+    if (!std::isfinite(next.cost)) break;
+    exchange(fit, grid, next);
+    fit.move_together(next);
+    constexpr double worth = 1e-6; // of the cost
+    if (!(next.cost < (1 - worth) * polygon.cost)) break;
+    polygon = std::move(next);
+    if (polygon.cost <= rounding) break;
   }
+  if (polygon.corners.empty()) return std::nullopt;
   const double reach = grid.back() / static_cast<double>(grid.size());
   for (int i = 0; i < 3; ++i) {
     fit.move_one_by_one(polygon, reach);

@@ -34,8 +34,9 @@ struct J2 {
     if (!std::isfinite(sum * sum + difference * difference + 4 * shear * shear)) return Status::failed; // a wild step
     const double alpha = old_history[3];
     const double dissipated = old_history[4];
-    const PlasticStep step =
-        plane_stress_return(elasticity, flow, sum, difference * difference + 4 * shear * shear, alpha, dt);
+    const double difference_squared = difference * difference + 4 * shear * shear;
+    if (!std::isfinite(sum * sum + difference_squared)) return Status::failed;
+    const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference_squared, alpha, dt);
     sum *= step.sum;
     difference *= step.difference;
     shear *= step.difference;

@@ -176,37 +176,22 @@ private:
     double angle = 0.5 * std::atan2(0.5 * stretch[2], half);
     Solution best = lay_flat(p, plain, angle);
     if (!balanced(p, best) && !settle(p, angle, best)) {
-      turn(p, plain, angle, best);
-      // in tension along, without traction across: of a potential that is convex the minimum; of others, or where
-      // Newton stays away from it, the whole circle is looked at
-      constexpr double nearly = 1e-9;
-      if (!(traction(p, best) <= nearly && best.amount > 0 && best.along.dot(best.law.stress) > 0)) {
-        constexpr int directions = 12;
-        const double first = angle;
-        for (int i = 1; i < directions; ++i) {
-          const double other = first + std::acos(-1.0) * i / directions;
-          const Solution at = lay_flat(p, plain, other);
-          if (at.status != Status::ok || (best.status == Status::ok && !(at.law.potential < best.law.potential)))
-            continue;
-          best = at;
-          angle = other;
-        }
-        turn(p, plain, angle, best);
+      constexpr int directions = 12;
+      const double first = angle;
+      for (int i = 1; i < directions; ++i) {
+        const double other = first + std::acos(-1.0) * i / directions;
+        const Solution at = lay_flat(p, plain, other);
+        if (at.status != Status::ok || (best.status == Status::ok && !(at.law.potential < best.law.potential)))
+          continue;
+        best = at;
+        angle = other;
       }
+      turn(p, plain, angle, best);
       ask_law(p, best); // the history of the best, not of the last
     }
     if (best.status != Status::ok) best.status = plain.status; // however flat: what is missing is missing without
     best.surface = Surface::wrinkled;
     return best;
-  }
-
-  // Shear traction across the wrinkles, relative to what modulus and strain could make; NaN where the law has failed.
-  static double traction(const Point& p, const Solution& at) noexcept {
-    if (at.status != Status::ok) return std::numeric_limits<double>::quiet_NaN();
-    const double scale =
-        (p.strain + at.amount * at.across).cwiseAbs().maxCoeff() * at.law.tangent.cwiseAbs().maxCoeff();
-    const double shear = std::abs(at.shear.dot(at.law.stress));
-    return shear > 0 ? shear / scale : shear;
   }
 
   // No traction across the wrinkles, to rounding.

@@ -45,6 +45,7 @@ public:
       result_.reason = fmt::format("no equilibrium at the start: {}", balance.reason);
       return std::move(result_);
     }
+    system_.evaluate_accepted(at_, true); // a foil that yields goes on to do so
     if (nothing_drives()) {
       result_.reason = "nothing drives the path: what is stated is what the start already has";
       return std::move(result_);
@@ -192,6 +193,12 @@ private:
       const Change foreseen = predicted(*goal);
       Configuration next = moved(system_, at_, foreseen);
       const Newton::Outcome outcome = solve(next, *goal);
+      flow_excess_ = outcome.converged ? options_.flow.excess(system_.flow()) : 0;
+      const double planned = std::abs(goal->to - goal->from);
+      if (flow_excess_ > 1 && planned > *shortest) {
+        length_ = planned * FlowLimits::factor(flow_excess_);
+        continue;
+      }
       std::string reason = outcome.reason;
       bool objected = false;
       if (outcome.converged) {
@@ -507,7 +514,7 @@ private:
   void grow(const Goal& goal, int iterations) {
     const double factor = std::clamp(std::sqrt(wanted_iterations / std::max(iterations, 1)), 0.5, 2.0);
     const double planned = is_arc() ? goal.to : std::max(std::abs(goal.to - goal.from), length_);
-    length_ = factor * planned;
+    length_ = std::min(factor, FlowLimits::factor(flow_excess_)) * planned;
   }
 
   void accept(int iterations, bool end_of_part) {
@@ -651,6 +658,7 @@ private:
   double start_ = 0, length_ = 0, first_arc_ = 0;
   int part_ = 1;
   bool started_by_load_ = false;
+  double flow_excess_ = 0;                 // of the last step that was found
   Configuration begin_;                    // in equilibrium
   double first_span_ = 0;                  // m, of the cushion there
   double farthest_ = 0;                    // root mean square displacement so far, m

@@ -37,6 +37,7 @@ struct ControlledPathOptions {
   int max_iterations = 15;     // of one step: beyond, it is better cut
   double smallest_step = 1e-6; // of the first step
   bool only_looking = false;   // for limit points: bifurcations are not located
+  FlowLimits flow;             // as in LoadPathOptions
   Objection objection;         // as in LoadPathOptions
 };
 

@@ -71,6 +71,15 @@ std::optional<Change> way_with_edges(const System& system, Newton& newton, const
 
 } // namespace
 
+double FlowLimits::excess(const System::Flow& flow) const {
+  return std::max(flow.growth / growth, std::sqrt(flow.error / error)); // the error goes with the step's square
+}
+
+double FlowLimits::factor(double excess) {
+  constexpr double safety = 0.8;
+  return std::max(0.1, safety / std::max(excess, 1e-300));
+}
+
 bool turned_over(const System& system, const Configuration& before, const Configuration& after) {
   const geometry::Mesh& mesh = system.model().mesh;
   bool turned = false;
@@ -138,10 +147,9 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
       outcome.converged = false;
       outcome.reason = "an element would be turned over";
     }
-    const double flow_error = outcome.converged && system.time_step() > 0 ? system.flow_error() : 0;
-    if (flow_error > options.flow_tolerance && next - walked > options.smallest_step) {
-      constexpr double safety = 0.8; // the error goes with the square of the step
-      length = (next - walked) * std::max(0.1, safety * std::sqrt(options.flow_tolerance / flow_error));
+    const double excess = outcome.converged ? options.flow.excess(system.flow()) : 0;
+    if (excess > 1 && next - walked > options.smallest_step) {
+      length = (next - walked) * FlowLimits::factor(excess);
       continue;
     }
     const std::string objection = outcome.converged && options.objection ? options.objection(trial) : "";
@@ -174,9 +182,8 @@ PathResult follow_load(System& system, Newton& newton, Configuration& configurat
     walked = next;
     ++result.steps;
     if (outcome.iterations <= easy_iterations) {
-      double growth = 2;
-      if (flow_error > 0) growth = std::min(growth, 0.8 * std::sqrt(options.flow_tolerance / flow_error));
-      length = std::min(growth * (flow_error > 0 ? step_length : length), part);
+      const double factor = std::min(2.0, FlowLimits::factor(excess));
+      length = std::min(factor * (factor < 2 ? step_length : length), part);
     }
     const Step step{result.steps, result.load_factor, outcome.iterations, to_goal,
                     std::lerp(begin.time, end.time, walked)};

@@ -43,6 +43,17 @@ using Report = std::function<void(int step, const Iteration&)>;
 // Why a state that was found must not be accepted (foils that pass through each other); empty: it may.
 using Objection = std::function<std::string(const Configuration&)>;
 
+// How far foils may flow in one step, as equivalent plastic strain: the directions of flow are those of its end.
+struct FlowLimits {
+  double growth = 0.02; // at any point
+  double error = 1e-5;  // of what flows with time
+
+  // How many times too long a step is, in which they flowed so far.
+  double excess(const System::Flow& flow) const;
+  // What the length of the next step is at most.
+  static double factor(double excess);
+};
+
 // What part of the load acts when, s; linear between two of them.
 struct Moment {
   double time = 0;
@@ -52,15 +63,15 @@ struct Moment {
 struct LoadPathOptions {
   // The way of the load: time does not fall, and does not stand still without a change of the load.
   std::vector<Moment> schedule = {{0, 0}, {0, 1}};
-  int parts = 1;                // each stretch is reported at `parts` equal parts; between them steps are automatic
-  double smallest_step = 1e-5;  // of a stretch of the schedule
-  double flow_tolerance = 1e-5; // error of a step's flow in foils that flow with time, as equivalent strain
+  int parts = 1;               // each stretch is reported at `parts` equal parts; between them steps are automatic
+  double smallest_step = 1e-5; // of a stretch of the schedule
+  FlowLimits flow;
   int max_steps = 100000;
   Objection objection; // is answered by shorter steps; the path ends `stopped` a thousandth of the load before it
 };
 
 // Load control: along the schedule, whole parts first, cut back by four on any failure, doubled after easy success;
-// foils that flow with time decide on its steps, too (flow_tolerance); where edges move, a step starts along the
+// foils that yield shorten its steps, too (FlowLimits); where edges move, a step starts along the
 // tangent of the last one. `accepted` sees every accepted step, with the system evaluated there; `configuration` ends
 // as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,

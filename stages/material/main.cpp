@@ -97,9 +97,11 @@ public:
         },
         workflow::law_at(material, temperature()));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
-    const std::string name = fmt::format("{}_{}", material.name, options_.branches);
-    say(fmt::format("{}: the {} hardening branches nearest to {}, nu and kind of strain as of {}", name,
-                    options_.branches, test.name, material.name));
+    const std::size_t count = fitted.hardening.branches.size();
+    const std::string name = fmt::format("{}_{}", material.name, count);
+    say(fmt::format("{}: the {} hardening branch{} nearest to {}{}; nu and kind of strain as of {}", name, count,
+                    count == 1 ? "" : "es", test.name,
+                    static_cast<int>(count) < options_.branches ? ", more fit no better" : "", material.name));
     const solver::material::Law law = law_of(fitted);
     show(name, law);
     if (tests_.empty()) say_misfit(misfit(law, test, options_, std::nullopt), test);

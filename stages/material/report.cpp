@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/base/errors.h"
 #include "pipeline/drawing/chart.h"
 #include "pipeline/state/whole_file.h"
 
@@ -104,6 +105,13 @@ void write_csv(std::span<const Curve> curves, const Options& options) {
 }
 
 void write_svg(std::span<const Curve> curves, std::span<const TestCurve> tests, const Options& options) {
+  constexpr std::size_t most_names = 21; // that the legend has room for
+  if (curves.size() + tests.size() > most_names) {
+    throw base::InputError(
+        fmt::format("--svg: {} curves do not fit into one picture, up to {} do; name fewer materials, "
+                    "--ratios or rates",
+                    curves.size() + tests.size(), most_names));
+  }
   std::set<std::string> materials;
   std::vector<std::string> families; // curves of one material at one rate
   const auto family_of = [](const Curve& curve) { return curve.material + rate_of(curve); };

@@ -96,6 +96,13 @@ TEST(HardeningFit, MoreBranchesFitASmoothCurveBetter) {
   EXPECT_LT(worst(*fit_hardening(points, 5), points), 0.3e6);
 }
 
+TEST(HardeningFit, NoMoreBranchesThanTheCurveHas) {
+  const auto fit = fit_hardening(curve_of(etfe, 0.3, 100), 5);
+  ASSERT_TRUE(fit);
+  ASSERT_EQ(fit->branches.size(), 2U);
+  EXPECT_NEAR(fit->branches[1].stress / 27e6, 1, 1e-9);
+}
+
 TEST(HardeningFit, SofteningOnlyWhereItIsAskedFor) {
   const HardeningFit law{1000e6, {{20e6, 100e6}, {30e6, -40e6}, {26e6, 20e6}}, 0};
   const std::vector<CurvePoint> points = curve_of(law, 0.35, 140);

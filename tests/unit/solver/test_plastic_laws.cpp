@@ -387,6 +387,8 @@ TYPED_TEST(PlasticLaw, NeverFailsWhereTheStrainHasAnArea) {
   std::array<double, 5> history{};
   Response response;
   EXPECT_EQ(law.evaluate(Vec3(std::nan(""), 0, 0), history.data(), history.data(), 0, response), Status::failed);
+  EXPECT_EQ(J2(etfe_elasticity, plastic).evaluate(Vec3(1e200, 0, 0), history.data(), history.data(), 0, response),
+            Status::failed);
   EXPECT_EQ(
       Logarithmic(etfe_elasticity, plastic).evaluate(Vec3(-0.5, 0, 0), history.data(), history.data(), 0, response),
       Status::failed);

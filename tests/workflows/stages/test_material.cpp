@@ -214,6 +214,8 @@ TEST_F(MaterialBench, WhatIsWrongIsSaidWithItsPlace) {
   fails("m.yaml --steps 3", "from 10 to 100000");
   fails("m.yaml --ratios 2", "no ratio of stresses");
   fails("m.yaml --rate 0", "--rate: `0` is not positive");
+  fails("m.yaml --ratios 1:0,1:1,2:1,1:2,3:1,1:3,4:1,1:4,5:1,1:5,6:1 --svg p.svg",
+        "22 curves do not fit into one picture");
   fails("m.yaml --svg p.png", "does not end in .svg");
   fails("m.yaml --csv", "--csv needs a value");
   fails("m.yaml --data absent.csv", "--data: the file `absent.csv` cannot be read");

@@ -243,6 +243,18 @@ TEST_F(Stages, ControlsEndWhereTheyAreTold) {
   }
 }
 
+TEST_F(Stages, PressureBeyondTheLimitPointEndsWithFiveAndNamesIt) {
+  // the exact disc carries 3.758 C1 h / R = 7517 Pa (tests/hard_cases)
+  write(balloon("  up: {run: inflate, from: mesh, gauge_pressure: {main: 10 kPa}}\n"));
+  const Outcome run = pneuma("run w.yaml");
+  EXPECT_EQ(run.code, 5) << run.text;
+  EXPECT_THAT(run.text, HasSubstr("limit point at load factor 0.75"));
+  const json up = summary("up");
+  EXPECT_FALSE(up["converged"].get<bool>());
+  EXPECT_NEAR(up["load_factor"].get<double>(), 0.7517, 2e-3);
+  EXPECT_GT(pipeline::state::read_state(out("up") / "state.hdf").chambers[0].volume, 0);
+}
+
 TEST_F(Stages, ControlledPointThatCannotMoveIsRefusedAtItsPlace) {
   write(balloon(inflated_by("far", "{type: displacement, at: [1 m, 0 m], until: 3 cm}") +
                 inflated_by("rim", "{type: displacement, at: [0.1 m, 0 m], until: 3 cm}")));

@@ -183,5 +183,22 @@ TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
   }
 }
 
+TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
+  workflow::MaterialsResult library =
+      workflow::read_materials(std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml", {});
+  for (const workflow::Problem& problem : library.problems) ADD_FAILURE() << to_string(problem);
+  EXPECT_EQ(library.materials.size(), library.names.size());
+  for (const Material& material : library.materials) {
+    library.known.at(material.name).tension_field = false; // uniaxial stress is at its border
+    const MaterialLaw made = law_of(library.known, material.name, room);
+    EXPECT_THAT(material.source, HasSubstr(":")) << material.name << ": a mark, then the source";
+    EXPECT_EQ(material.density, 1750) << material.name;
+    const double stress = uniaxial_stress(made.law, 0.005);
+    const auto* j2 = std::get_if<workflow::J2Law>(&material.law);
+    const double E = j2 != nullptr ? j2->E : 900e6;
+    EXPECT_NEAR(stress, 0.005 * E, 0.02 * stress) << material.name; // squares of the strain
+  }
+}
+
 } // namespace
 } // namespace pneuma::stages::common
