@@ -197,6 +197,7 @@ private:
       const double planned = std::abs(goal->to - goal->from);
       if (flow_excess_ > 1 && planned > *shortest) {
         length_ = planned * FlowLimits::factor(flow_excess_);
+        system_.evaluate(at_, true); // of which the next goal asks the volume
         continue;
       }
       std::string reason = outcome.reason;

@@ -12,13 +12,13 @@ assembly::Model pulled_strip(const PerforatedSheet& sheet, const material::Law& 
 }
 
 PulledStrip::PulledStrip(const PerforatedSheet& sheet, const material::Law& law, double displacement, int parts,
-                         double duration, double flow_tolerance)
+                         double duration, const path::FlowLimits& flow)
     : system(pulled_strip(sheet, law, displacement), 1), newton(system, {}), at(start_of(system.model())) {
   linear::use_one_blas_thread(); // as the programs do
   const std::vector<Index> end = nodes_at(system.model().mesh, 1, sheet.height);
   path::LoadPathOptions options;
   options.parts = parts;
-  options.flow_tolerance = flow_tolerance;
+  options.flow = flow;
   options.schedule = {{0, 0}, {duration, 1}};
   path = path::follow_load(
       system, newton, at, options,
