@@ -196,8 +196,8 @@ private:
       flow_excess_ = outcome.converged ? options_.flow.excess(system_.flow()) : 0;
       const double planned = std::abs(goal->to - goal->from);
       if (flow_excess_ > 1 && planned > *shortest) {
+        system_.evaluate_accepted(at_, true);
         length_ = planned * FlowLimits::factor(flow_excess_);
-        system_.evaluate(at_, true); // of which the next goal asks the volume
         continue;
       }
       std::string reason = outcome.reason;

@@ -4,8 +4,6 @@
 // pulled along y and free to narrow.
 #pragma once
 
-#include <limits>
-
 #include "tests/verification/examples/sheets.h"
 
 namespace pneuma::tests {
@@ -30,10 +28,8 @@ struct StripPoint {
   double force = 0;        // of the quarter, N
 };
 
-// Steps as long as the parts are, however far the strip yields in them; what flows with time is followed to 1e-4.
-inline constexpr solver::path::FlowLimits whole_parts{std::numeric_limits<double>::infinity(), 1e-4};
-
-// The strip pulled in `parts` equal parts, each cut where it must; time passes evenly, `duration` s (0: none).
+// The strip pulled in `parts` equal parts, each cut where it must; time passes evenly, `duration` s (0: none), the
+// flow followed to the tolerance.
 struct PulledStrip {
   solver::assembly::System system;
   solver::path::Newton newton;
@@ -43,7 +39,7 @@ struct PulledStrip {
   int steps = 0;
 
   PulledStrip(const PerforatedSheet& sheet, const solver::material::Law& law, double displacement, int parts,
-              double duration = 0, const solver::path::FlowLimits& flow = whole_parts);
+              double duration = 0, double flow_tolerance = 1e-4);
   bool reached() const { return path.end == solver::path::PathEnd::reached; }
   int iterations() const { return newton.work().iterations; }
 };
