@@ -31,11 +31,10 @@ struct J2 {
     double sum = elasticity.sum_modulus() * (elastic[0] + elastic[1]);
     double difference = two_g * (elastic[0] - elastic[1]);
     double shear = 0.5 * two_g * elastic[2];
-    if (!std::isfinite(sum * sum + difference * difference + 4 * shear * shear)) return Status::failed; // a wild step
     const double alpha = old_history[3];
     const double dissipated = old_history[4];
     const double difference_squared = difference * difference + 4 * shear * shear;
-    if (!std::isfinite(sum * sum + difference_squared)) return Status::failed;
+    if (!std::isfinite(sum * sum + difference_squared)) return Status::failed; // a wild step
     const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference_squared, alpha, dt);
     sum *= step.sum;
     difference *= step.difference;
@@ -63,11 +62,12 @@ struct J2 {
     return Status::ok;
   }
 
-  // E33 of the elastic strain from S33 = 0, of the plastic one from its trace 0; NaN where the law has no such
-  // thickness
+  // As St. Venant-Kirchhoff's of the elastic strain (NaN where that law has no thickness), times that of the plastic
+  // one, which keeps the volume however large it is.
   double thickness_stretch(const Vec3& strain, const double* history) const noexcept {
-    const double plastic = history[0] + history[1];
-    return std::sqrt(1 + 2 * (elasticity.thickness_strain(strain[0] + strain[1] - plastic) - plastic));
+    const double elastic = elasticity.thickness_strain(strain[0] + strain[1] - history[0] - history[1]);
+    const double plastic_area = (1 + 2 * history[0]) * (1 + 2 * history[1]) - 4 * history[2] * history[2]; // squared
+    return std::sqrt((1 + 2 * elastic) / plastic_area);
   }
 
   Vec3 stress_free_strain(const double* history) const noexcept { return {history[0], history[1], 2 * history[2]}; }

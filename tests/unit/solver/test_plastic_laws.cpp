@@ -315,8 +315,10 @@ TEST(J2, ThicknessStrainIsElasticAndPlasticWithoutVolumeOfTheLatter) {
   const Vec3 s = path.accept(strain).stress;
   const double nu = etfe_elasticity.poissons_ratio;
   const Vec3 plastic_strain = path.law.stress_free_strain(path.history.data());
-  const double e33 = -nu / etfe_elasticity.youngs_modulus * (s[0] + s[1]) - plastic_strain[0] - plastic_strain[1];
-  EXPECT_NEAR(path.thickness(strain), std::sqrt(1 + 2 * e33), 1e-15);
+  const double elastic = -nu / etfe_elasticity.youngs_modulus * (s[0] + s[1]);
+  const double area =
+      std::sqrt((1 + 2 * plastic_strain[0]) * (1 + 2 * plastic_strain[1]) - std::pow(plastic_strain[2], 2));
+  EXPECT_NEAR(path.thickness(strain), std::sqrt(1 + 2 * elastic) / area, 1e-15);
 }
 
 TEST(PlasticLaws, FailRatherThanOverflow) {
