@@ -18,11 +18,8 @@ namespace pneuma::solver::material {
 // Appl. Mech. Eng. 79; Eterovic and Bathe 1990; de Souza Neto, Peric and Owen 2008, sec. 14.4). With isotropy e of the
 // trial state Ce = Up^-1 C Up^-1 and T are coaxial: the return is that of small strains on the principal values,
 //   s_i = T_i / c_i, c_i and n_i principal of Ce, S = Up^-1 (s_1 n_1 n_1 + s_2 n_2 n_2) Up^-1,
-// and the tangent is exact and symmetric: with E_i = (c_i - 1) / 2
-//   ds_i/dE_j = D_ij / (c_i c_j) - 2 delta_ij T_i / c_i^2,
-//   (s_1 - s_2) / (E_1 - E_2) from (T_1 - T_2) / (e_1 - e_2) = 2 G, less what has flowed, and that of the logarithms,
-// so that equal stretches lose no digits. Fails where det C <= 0. History: plastic stretch Up - I (of Fp only Cp =
-// Up Up matters), alpha, dissipated work.
+// and the tangent is exact and symmetric (`of_logarithm`). Fails where det C <= 0. History: plastic stretch Up - I (of
+// Fp only Cp = Up Up matters), alpha, dissipated work.
 struct Logarithmic {
   static constexpr std::array<std::string_view, 5> history_names = {"plastic_stretch_11", "plastic_stretch_22",
                                                                     "plastic_stretch_12", equivalent_plastic_strain,
@@ -44,7 +41,7 @@ struct Logarithmic {
     if (!(log.c2 > 0) || !std::isfinite(log.c1)) return Status::failed;
 
     const double two_g = 2 * elasticity.shear_modulus();
-    double sum = elasticity.sum_modulus() * (2 * log.second + log.difference); // T_1 + T_2
+    double sum = elasticity.sum_modulus() * (2 * log.second + log.difference); // T1 + T2
     double difference = two_g * log.difference;
     if (!std::isfinite(sum * sum + difference * difference)) return Status::failed; // of a step gone wild
     const PlasticStep step = plane_stress_return(elasticity, flow, sum, difference * difference, alpha, dt);
@@ -52,18 +49,21 @@ struct Logarithmic {
     difference *= step.difference;
     const double xi_sum = elasticity.sum_modulus() * step.sum;
     const double xi_difference = two_g * step.difference;
-    double D11 = 0.5 * (xi_sum + xi_difference);
-    double D12 = 0.5 * (xi_sum - xi_difference);
-    double D22 = D11;
+    PrincipalKirchhoff t;
+    t.t1 = 0.5 * (sum + difference);
+    t.t2 = 0.5 * (sum - difference);
+    t.quotient = xi_difference;
+    t.d11 = t.d22 = 0.5 * (xi_sum + xi_difference);
+    t.d12 = 0.5 * (xi_sum - xi_difference);
     response.energy = elasticity.energy(sum, difference * difference);
     response.potential = response.energy;
     std::copy_n(old_history, history_names.size(), new_history);
     if (step.flows) {
       const double w1 = 0.25 * (xi_sum * sum + 3 * xi_difference * difference); // Xi P T
       const double w2 = 0.25 * (xi_sum * sum - 3 * xi_difference * difference);
-      D11 -= step.softening * w1 * w1;
-      D12 -= step.softening * w1 * w2;
-      D22 -= step.softening * w2 * w2;
+      t.d11 -= step.softening * w1 * w1;
+      t.d12 -= step.softening * w1 * w2;
+      t.d22 -= step.softening * w2 * w2;
       response.potential += flow.potential(alpha, step.increment, step.time_ratio);
       const Symmetric grown = grow(up, std::expm1(0.25 * step.multiplier * (sum + 3 * difference)) * trial.along1 +
                                            std::expm1(0.25 * step.multiplier * (sum - 3 * difference)) * trial.along2);
@@ -74,21 +74,10 @@ struct Logarithmic {
       new_history[4] = dissipated + flow.dissipation(alpha, step.increment, step.equivalent_stress);
     }
 
-    const double T1 = 0.5 * (sum + difference);
-    const double T2 = 0.5 * (sum - difference);
-    const double i1 = 1 / log.c1;
-    const double i2 = 1 / log.c2;
-    PrincipalFunction s;
-    s.s1 = T1 * i1;
-    s.s2 = T2 * i2;
-    s.d11 = (D11 - 2 * T1) * i1 * i1;
-    s.d22 = (D22 - 2 * T2) * i2 * i2;
-    s.d12 = s.d21 = D12 * i1 * i2;
-    s.quotient = 0.5 * xi_difference * log.quotient * (i1 + i2) - sum * i1 * i2;
     trial.along1 = pushed_forward(trial.along1, v);
     trial.along2 = pushed_forward(trial.along2, v);
     trial.shear = pushed_forward(trial.shear, v);
-    in_frame(trial, s, response.stress, response.tangent);
+    in_frame(trial, of_logarithm(log, t), response.stress, response.tangent);
     return Status::ok;
   }
 

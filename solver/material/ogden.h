@@ -34,10 +34,8 @@ struct Ogden {
     const PrincipalLogarithm l = principal_logarithm(e);
     if (!(l.c2 > 0)) return Status::failed;
     double energy = 0;
-    double T1 = 0;
-    double T2 = 0;
-    double difference_quotient = 0; // (T1 - T2) / (E1 - E2)
-    double a1 = 0;                  // sum mu alpha l^alpha of each direction
+    PrincipalKirchhoff t;
+    double a1 = 0; // sum mu alpha l^alpha of each direction
     double a2 = 0;
     double a3 = 0;
     for (int k = 0; k < count; ++k) {
@@ -51,23 +49,17 @@ struct Ogden {
       const double quotient = l.difference > 0 ? ratio / l.difference : alpha;
       // the sum of the three less one, whose first orders cancel
       energy -= mu / alpha * (product * less3 + less1 * less2);
-      T1 += mu * (less1 - less3);
-      T2 += mu * (less2 - less3);
-      difference_quotient += mu * (1 + less2) * quotient * l.quotient;
+      t.t1 += mu * (less1 - less3);
+      t.t2 += mu * (less2 - less3);
+      t.quotient += mu * (1 + less2) * quotient;
       a1 += mu * alpha * (1 + less1);
       a2 += mu * alpha * (1 + less2);
       a3 += mu * alpha * (1 + less3);
     }
-    const double i1 = 1 / l.c1;
-    const double i2 = 1 / l.c2;
-    PrincipalFunction f;
-    f.s1 = T1 * i1;
-    f.s2 = T2 * i2;
-    f.d11 = (a1 + a3 - 2 * T1) * i1 * i1;
-    f.d22 = (a2 + a3 - 2 * T2) * i2 * i2;
-    f.d12 = f.d21 = a3 * i1 * i2;
-    f.quotient = (difference_quotient - 2 * f.s2) * i1; // of T1 / C1 - T2 / C2
-    in_frame(e, f, response.stress, response.tangent);
+    t.d11 = a1 + a3;
+    t.d22 = a2 + a3;
+    t.d12 = a3;
+    in_frame(e, of_logarithm(l, t), response.stress, response.tangent);
     response.energy = response.potential = energy;
     return response.stress.allFinite() && response.tangent.allFinite() ? Status::ok : Status::failed;
   }

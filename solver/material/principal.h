@@ -85,60 +85,27 @@ inline PrincipalLogarithm principal_logarithm(const PrincipalStrain& e) noexcept
   return l;
 }
 
-// The logarithmic strain ln(C)/2 = (11, 22, 2 12) of a Green-Lagrange strain, and its derivatives by that.
-struct LogStrain {
-  Vec3 strain = Vec3::Zero();
-  Mat3 slope = Mat3::Identity();
-
-  PrincipalStrain green; // E
-  PrincipalLogarithm logarithm;
-
-  // sum_a stress_a d2 strain_a / dE2 of a conjugate stress (11, 22, 12), which need not have the axes of E.
-  // By divided differences f[i, j, k] of f(E) = ln(1 + 2 E)/2 (Daleckii and Krein 1965),
-  //   d2 (T : e) [H, H] = 2 sum_ij T_ij sum_k f[i, k, j] H_ik H_kj,
-  // with C1 = m (1 + y), C2 = m (1 - y) and a = (atanh(y)/y - 1)/y^2, which is all that two close values need:
-  //   m^2 f[1, 1, 2] = -1/(1 + y) - y a,   m^2 f[1, 2, 2] = -1/(1 - y) + y a.
-  Mat3 curvature(const Vec3& stress) const noexcept {
-    const double m = logarithm.c2 + green.difference;
-    const double y = green.difference / m;
-    constexpr double close = 0.25;
-    double a = 0;
-    if (y < close) {
-      for (int k = 25; k > 1; k -= 2) a = a * y * y + 1.0 / k; // 1/3 + y^2/5 + ..: what is left is below 1e-16
-    } else {
-      a = (logarithm.quotient * m - 1) / (y * y);
-    }
-    const double f111 = -1 / (logarithm.c1 * logarithm.c1);
-    const double f222 = -1 / (logarithm.c2 * logarithm.c2);
-    const double f112 = -(m / logarithm.c1 + y * a) / (m * m);
-    const double f122 = -(m / logarithm.c2 - y * a) / (m * m);
-    const Vec3 twice(stress[0], stress[1], 2 * stress[2]);
-    const double t1 = green.along1.dot(twice);
-    const double t2 = green.along2.dot(twice);
-    const double t12 = green.shear.dot(twice);
-    const Vec3 by1 = 2 * (t1 * f111 * green.along1 + t12 * f112 * green.shear);
-    const Vec3 by2 = 2 * (t2 * f222 * green.along2 + t12 * f122 * green.shear);
-    const Vec3 turn = 2 * ((t1 * f112 + t2 * f122) * green.shear + t12 * (f112 * green.along1 + f122 * green.along2));
-    return by1 * green.along1.transpose() + by2 * green.along2.transpose() + turn * green.shear.transpose();
-  }
+// Principal values of a Kirchhoff stress T that has the axes of ln(C)/2, and their derivatives by that strain.
+struct PrincipalKirchhoff {
+  double t1 = 0, t2 = 0;
+  double d11 = 0, d12 = 0, d22 = 0; // d t_i / d e_j, symmetric
+  double quotient = 0;              // (t1 - t2) / (e1 - e2), at equal strains d11 - d12
 };
 
-// False where C is not positive definite. Stretches from 0.1 to 10 in any directions: the digits are those of E.
-inline bool log_strain(const Vec3& strain, LogStrain& log) noexcept {
-  log.green = principal_strain(strain);
-  log.logarithm = principal_logarithm(log.green);
-  const PrincipalLogarithm& l = log.logarithm;
-  if (!(l.c2 > 0) || !std::isfinite(l.c1)) return false;
-  PrincipalFunction f;
-  f.s2 = l.second;
-  f.s1 = l.second + l.difference;
-  f.d11 = 1 / l.c1;
-  f.d22 = 1 / l.c2;
-  f.quotient = l.quotient;
-  in_frame(log.green, f, log.strain, log.slope);
-  log.strain[2] *= 2;
-  log.slope.row(2) *= 2;
-  return true;
+// Its S as a function of E:
+//   s_i = t_i / c_i,   ds_i/dE_j = d_ij / (c_i c_j) - 2 delta_ij t_i / c_i^2,
+//   (s1 - s2) / (E1 - E2) from the quotients of T and of the logarithms, so that equal stretches lose no digits.
+inline PrincipalFunction of_logarithm(const PrincipalLogarithm& log, const PrincipalKirchhoff& t) noexcept {
+  const double i1 = 1 / log.c1;
+  const double i2 = 1 / log.c2;
+  PrincipalFunction s;
+  s.s1 = t.t1 * i1;
+  s.s2 = t.t2 * i2;
+  s.d11 = (t.d11 - 2 * t.t1) * i1 * i1;
+  s.d22 = (t.d22 - 2 * t.t2) * i2 * i2;
+  s.d12 = s.d21 = t.d12 * i1 * i2;
+  s.quotient = (t.quotient * log.quotient - 2 * s.s2) * i1;
+  return s;
 }
 
 } // namespace pneuma::solver::material
