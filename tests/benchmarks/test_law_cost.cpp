@@ -14,6 +14,7 @@
 
 #include "geometry/meshing/plan_mesh.h"
 #include "solver/element/membrane.h"
+#include "solver/material/nurbs_fit.h"
 
 namespace pneuma::tests {
 namespace {
@@ -62,6 +63,10 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
   const material::Flow etfe = flow({{16e6, 160e6}, {27e6, 80e6}});
   const material::Viscosity creep{material::Overstress::perzyna, 1e4, 0.3, 1.5e6};
   const material::Flow creeping = flow({{16e6, 160e6}, {27e6, 80e6}}, creep);
+  const material::Ogden treloar{3, {{{0.63e6, 1.3}, {0.0012e6, 5}, {-0.01e6, -2}}}};
+  material::NurbsOptions options;
+  options.range = material::StrainRange{-0.05, 0.2};
+  const material::Law tabled(elastic);
   const std::vector<Vec3> small = stretched(0.01);
   const std::vector<Vec3> large = stretched(0.2);
   std::vector<std::pair<std::string, Measured>> laws;
@@ -71,6 +76,13 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
   };
   add("St. Venant-Kirchhoff", elastic, small);
   add("tension field of it", material::TensionField<material::StVenantKirchhoff>{elastic}, small);
+  add("rubber", material::MooneyRivlin{0.2e6, 0.05e6}, large);
+  add("Ogden, three terms", treloar, large);
+  add("orthotropic", material::Orthotropic{1000e6, 300e6, 0.4, 50e6}, small);
+  add("PD-NURBS, degree 3", material::PdNurbs{material::fit_pd_nurbs(tabled, options).table}, small);
+  add("LE-NURBS, degree 3", material::LeNurbs{material::fit_le_nurbs(tabled, options).table}, small);
+  options.degree = 5;
+  add("PD-NURBS, degree 5", material::PdNurbs{material::fit_pd_nurbs(tabled, options).table}, small);
   add("J2, elastic", material::J2{elasticity, never}, small);
   add("J2, flows", material::J2{elasticity, etfe}, large);
   add("J2, creeps", material::J2{elasticity, creeping}, large);
