@@ -423,7 +423,7 @@ std::string System::why_failed(std::size_t foil, const Configuration& configurat
 
 void System::accept_history() {
   before_.swap(accepted_);
-  accepted_.swap(new_);
+  accepted_ = new_; // which stays: accepted again it is the same
   accepted_time_step_ = time_step_;
 }
 

@@ -189,7 +189,8 @@ private:
       turn(p, plain, angle, best);
       ask_law(p, best); // the history of the best, not of the last
     }
-    if (best.status != Status::ok) best.status = plain.status; // however flat: what is missing is missing without
+    // however flat: what is missing is missing without
+    if (best.status != Status::ok && plain.status != Status::ok) best.status = plain.status;
     best.surface = Surface::wrinkled;
     return best;
   }

@@ -39,13 +39,15 @@ public:
         report_(report) {}
 
   PathResult run() {
+    system_.set_time_step(0);
     // e.g. strips that are welded, but not yet in balance with what the load factor of the start says
     const Newton::Outcome balance = newton_.solve(at_);
     if (!balance.converged) {
       result_.reason = fmt::format("no equilibrium at the start: {}", balance.reason);
       return std::move(result_);
     }
-    system_.evaluate_accepted(at_, true); // a foil that yields goes on to do so
+    if (balance.iterations > 0) system_.accept_history(); // what flowed on the way there has flowed
+    system_.evaluate_accepted(at_, true);                 // a foil that yields goes on to do so
     if (nothing_drives()) {
       result_.reason = "nothing drives the path: what is stated is what the start already has";
       return std::move(result_);
@@ -337,7 +339,7 @@ private:
       const Newton::Outcome outcome = newton_.solve(next, [&](const Iteration& i) {
         if (report_) report_(result_.steps + 1, i);
       });
-      if (!outcome.converged || !objection_to(next).empty()) continue;
+      if (!outcome.converged || options_.flow.excess(system_.flow()) > 1 || !objection_to(next).empty()) continue;
       if (!is_arc()) {
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;

@@ -48,7 +48,7 @@ struct ControlledPathOptions {
 // found and made a step of its own, unless the step ends beside it; where the count of negative eigenvalues changes
 // otherwise, the bifurcation. A path that is at its goal already takes no step; where a held displacement or volume
 // turns back it is stuck. `configuration` is brought into equilibrium at its load factor first, and ends as the last
-// accepted one. All steps take the time step that the system has: none, or foils that flow with time do so in each.
+// accepted one. No time passes (System::set_time_step).
 PathResult follow_control(System& system, Newton& newton, Configuration& configuration, const PathControl& control,
                           const ControlledPathOptions& options, const Accept& accepted, const Report& report = {});
 

@@ -26,7 +26,6 @@ std::optional<CriticalPoint> limit_ahead(System& system, Newton& newton, const C
   arc.after_peak = 1 - 1e-9;
   Configuration at = from;
   const System::Memory memory = system.memory();
-  system.set_time_step(0);
   const PathResult seen = follow_control(system, newton, at, arc, options, {});
   system.restore(memory);
   for (const CriticalPoint& point : seen.critical) {
