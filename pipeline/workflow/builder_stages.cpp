@@ -144,7 +144,7 @@ SolverOptions Builder::options_of(const Value& stage) {
   const Value* options = stage["options"];
   if (options == nullptr) return {};
   return {optional_number(*options, "tolerance"), optional_integer(*options, "max_iterations"),
-          optional_integer(*options, "max_steps")};
+          optional_integer(*options, "max_steps"), optional_number(*options, "plastic_step")};
 }
 
 Control Builder::control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas) {
