@@ -177,6 +177,7 @@ std::vector<Moment> Builder::schedule_of(const Value& stage, const std::string& 
     if (moment.time < last.time) {
       fail(item.mark, fmt::format("time goes back: {} s after {} s", moment.time, last.time));
     } else if (moment.time == last.time && moment.factor == last.factor) {
+      if (schedule.empty() && moment.time == 0) continue; // the beginning, said
       fail(item.mark, "nothing happens up to this moment: neither time nor factor change");
     }
     last = moment;
