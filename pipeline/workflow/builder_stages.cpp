@@ -144,7 +144,7 @@ SolverOptions Builder::options_of(const Value& stage) {
   const Value* options = stage["options"];
   if (options == nullptr) return {};
   return {optional_number(*options, "tolerance"), optional_integer(*options, "max_iterations"),
-          optional_integer(*options, "max_steps")};
+          optional_integer(*options, "max_steps"), optional_number(*options, "plastic_step")};
 }
 
 Control Builder::control_of(const Value& stage, const std::string& path, const std::map<std::string, Gas>& gas) {
@@ -177,6 +177,7 @@ std::vector<Moment> Builder::schedule_of(const Value& stage, const std::string& 
     if (moment.time < last.time) {
       fail(item.mark, fmt::format("time goes back: {} s after {} s", moment.time, last.time));
     } else if (moment.time == last.time && moment.factor == last.factor) {
+      if (schedule.empty() && moment.time == 0) continue; // the beginning, said
       fail(item.mark, "nothing happens up to this moment: neither time nor factor change");
     }
     last = moment;

@@ -163,7 +163,10 @@ Option path_options() {
   return solver_options(
       {integer("max_steps",
                "after so many the path is given up; without it after 500, under load control as many as it takes")
-           .between(1, 100000, "from 1 to 100000")});
+           .between(1, 100000, "from 1 to 100000"),
+       number("plastic_step", "the most that the equivalent plastic strain of a yielding foil grows in a step")
+           .within({0, 1, "above 0, up to 1", false, true})
+           .otherwise("0.02")});
 }
 
 Option control() {

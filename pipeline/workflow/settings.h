@@ -180,7 +180,8 @@ struct MeshSettings {
 struct SolverOptions {
   std::optional<double> tolerance; // relative residual
   std::optional<int> max_iterations;
-  std::optional<int> max_steps; // of inflate and wind
+  std::optional<int> max_steps;       // of inflate and wind, and
+  std::optional<double> plastic_step; // growth of the equivalent plastic strain in a step
 };
 
 struct FormfindSettings {

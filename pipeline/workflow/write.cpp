@@ -470,6 +470,7 @@ Node stage_node(const StageSettings& stage) {
   if (stage.options.tolerance) add(options, "tolerance", plain(*stage.options.tolerance));
   if (stage.options.max_iterations) add(options, "max_iterations", plain(*stage.options.max_iterations));
   if (stage.options.max_steps) add(options, "max_steps", plain(*stage.options.max_steps));
+  if (stage.options.plastic_step) add(options, "plastic_step", plain(*stage.options.plastic_step));
   add(node, "options", options);
   return node;
 }

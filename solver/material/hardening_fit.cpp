@@ -254,6 +254,8 @@ std::optional<HardeningFit> fit_hardening(std::span<const CurvePoint> points, in
     if (polygon.cost <= rounding) break;
   }
   if (polygon.corners.empty()) return std::nullopt;
+  constexpr double straight = 0.99; // of the elastic slope
+  if (polygon.slopes[1] > straight * polygon.slopes[0]) return std::nullopt;
   const double reach = grid.back() / static_cast<double>(grid.size());
   for (int i = 0; i < 3; ++i) {
     fit.move_one_by_one(polygon, reach);

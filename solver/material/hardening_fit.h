@@ -31,7 +31,8 @@ struct HardeningFit {
 // most, then moved by Gauss-Newton (Muggeo 2003, Statistics in Medicine 22) and, where that ends, one by one. The curve
 // rises, less steeply than the elastic line; the last branch may be level, those before it, with `softening`, fall. A
 // polygon that no move of a single corner betters; that none is better at all is not proved. Nothing where the points
-// cannot carry as many unknowns: fewer than 2 branches + 1 different strains above 0, or no such polygon.
+// cannot carry as many unknowns: fewer than 2 branches + 1 different strains above 0, or no such polygon; and where
+// they lie on one line: nothing yields.
 std::optional<HardeningFit> fit_hardening(std::span<const CurvePoint> points, int branches, bool softening = false);
 
 } // namespace pneuma::solver::material

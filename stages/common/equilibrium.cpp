@@ -134,6 +134,7 @@ private:
       options.parts = parts;
       options.objection = objection;
       if (given.max_steps) options.max_steps = *given.max_steps;
+      if (given.plastic_step) options.flow.growth = *given.plastic_step;
       if (given.max_iterations) options.max_iterations = *given.max_iterations;
       return path::follow_control(system_, newton_, c, *control, options, accepted, report);
     }
@@ -145,6 +146,7 @@ private:
     options.parts = parts;
     options.objection = objection;
     if (given.max_steps) options.max_steps = *given.max_steps;
+    if (given.plastic_step) options.flow.growth = *given.plastic_step;
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
 

@@ -77,7 +77,7 @@ public:
     if (const auto range = workflow::temperatures_of(material); options_.temperature && !range) {
       say("  does not depend on the temperature");
     }
-    if (material.tension_field) say("  its tension field changes nothing in tension and is left out");
+    if (material.tension_field) say("  without its tension field, which changes nothing in tension");
     const common::MaterialLaw made = common::law_of(taut, material.name, temperature());
     common::say_fit(material.name, made);
     show(material.name, made.law);
