@@ -231,6 +231,11 @@ struct TableStress {
   double d11, d12, d21, d22;
 };
 
+TableStress derivatives(const nurbs::Surface<1>& potential, double e1, double e2) {
+  const nurbs::SurfaceJet<1> w = nurbs::evaluate(potential, e1, e2);
+  return {w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
+}
+
 // Monotony and integrability, looked for at the places of a law's samples.
 template <class F>
 void judge(const F& stress, const TableDomain& domain, const std::vector<double>& in_first,
@@ -385,12 +390,8 @@ PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRa
   table->near = 1e-4 * smallest_span(ends);
   if (options.potential) {
     report_residuals(potential.residuals, observations, fit.report);
-    judge(
-        [&](double e1, double e2) {
-          const nurbs::SurfaceJet<1> w = nurbs::evaluate(table->potential, e1, e2);
-          return TableStress{w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
-        },
-        table->domain, ends, ends, fit.report);
+    judge([&](double e1, double e2) { return derivatives(table->potential, e1, e2); }, table->domain, ends, ends,
+          fit.report);
   } else {
     for (nurbs::SurfaceObservation& o : observations.list) { // S2(a, b) = S1(b, a)
       if (o.order_v == 1) std::swap(o.u, o.v);
@@ -426,12 +427,8 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
   table->domain = domain_of(points, range, false);
   if (options.potential) {
     report_residuals(potential.residuals, observations, fit.report);
-    judge(
-        [&](double e1, double e2) {
-          const nurbs::SurfaceJet<1> w = nurbs::evaluate(table->potential, e1, e2);
-          return TableStress{w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
-        },
-        table->domain, ends1, ends2, fit.report);
+    judge([&](double e1, double e2) { return derivatives(table->potential, e1, e2); }, table->domain, ends1, ends2,
+          fit.report);
   } else {
     const nurbs::Knots knots1 = nurbs::from_breaks(options.degree, ends1);
     const nurbs::Knots knots2 = nurbs::from_breaks(options.degree, ends2);

@@ -38,6 +38,17 @@ double stress_error(const M& law, const Vec3& strain, double step) {
   return relative_difference(finite_difference_jacobian(energy, strain, step), at.stress.transpose());
 }
 
+// Counts how often it is asked.
+template <solver::material::Material M>
+struct Counted : M {
+  static inline int asked = 0;
+  solver::material::Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
+                                    Response& response) const noexcept {
+    ++asked;
+    return M::evaluate(strain, old_history, new_history, dt, response);
+  }
+};
+
 // Green-Lagrange strain of stretches along axes turned by `angle`.
 inline Vec3 strain_of(double stretch1, double stretch2, double angle = 0) {
   const double c = std::cos(angle);

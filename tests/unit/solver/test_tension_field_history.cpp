@@ -212,16 +212,6 @@ TYPED_TEST(PlasticTensionField, StretchedAlongOneDirectionFollowsOneDimensionalP
   EXPECT_GT(alpha, 0.04);
 }
 
-template <Material M>
-struct Counted : M {
-  static inline int asked = 0;
-  Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
-                  Response& response) const noexcept {
-    ++asked;
-    return M::evaluate(strain, old_history, new_history, dt, response);
-  }
-};
-
 TYPED_TEST(PlasticTensionField, AsksItsLawAFewTimes) {
   for (const double size : {0.03, 0.3}) {
     int sum = 0, wrinkled = 0;

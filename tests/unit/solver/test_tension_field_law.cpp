@@ -99,17 +99,6 @@ TEST(TensionField, HasTheLeastPotentialOfAllWrinkles) {
   });
 }
 
-// Counts how often it is asked.
-template <Material M>
-struct Counted : M {
-  static inline int asked = 0;
-  Status evaluate(const Vec3& strain, const double* old_history, double* new_history, double dt,
-                  Response& response) const noexcept {
-    ++asked;
-    return M::evaluate(strain, old_history, new_history, dt, response);
-  }
-};
-
 template <Material M>
 void expect_few_evaluations(const M& law, double size, int most) {
   const TensionField<Counted<M>> counted{{law}};
