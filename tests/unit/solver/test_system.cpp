@@ -271,6 +271,16 @@ TEST(System, RefusesToMoveWhatIsFreeOrABase) {
   }
 }
 
+TEST(System, ElasticFoilHasNoHistoryBesideOneThatYields) {
+  assembly::Model model = model_of(small(ElementType::T6), 0);
+  const material::HardeningBranch branch[] = {{15e6, 72e6}};
+  model.foils[1]->law = material::Logarithmic{{900e6, 0.45}, {material::piecewise_linear(branch).value(), {}}};
+  const std::size_t points = model.foils[1]->reference.area.size();
+  const assembly::System system(std::move(model), 1);
+  EXPECT_TRUE(system.history(0).empty());
+  EXPECT_EQ(system.history(1).size(), points * material::Logarithmic::history_names.size());
+}
+
 TEST(System, RefusesFoilsThatShareAFreeNode) {
   assembly::Model model = model_of(small(ElementType::Q4), 0);
   model.fixed[3 * static_cast<std::size_t>(model.mesh.edges[0].nodes[1])] = 0;
