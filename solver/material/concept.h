@@ -59,6 +59,16 @@ concept Material = requires(const M& m, const Vec3& strain, const double* old_hi
 template <Material M>
 inline constexpr int history_size = static_cast<int>(M::history_names.size());
 
+// Whether a law flows with time.
+template <Material M>
+constexpr bool flows_with_time(const M& law) noexcept {
+  if constexpr (requires { law.is_rate_dependent(); }) {
+    return law.is_rate_dependent();
+  } else {
+    return false;
+  }
+}
+
 // The history of laws that have none.
 inline constexpr std::array<std::string_view, 0> no_history{};
 

@@ -11,10 +11,6 @@ int history_components(const Law& law) {
   return static_cast<int>(history_names(law).size());
 }
 
-Vec3 stress_free_strain(const Law& law, const double* history) {
-  return std::visit([&]<Material M>(const M& m) -> Vec3 { return m.stress_free_strain(history); }, law);
-}
-
 Relaxed relaxed(const Law& law, const Vec3& strain, const double* history) {
   return std::visit(
       [&]<Material M>(const M& m) -> Relaxed {
@@ -38,15 +34,7 @@ bool has_tension_field(const Law& law) {
 }
 
 bool is_rate_dependent(const Law& law) {
-  return std::visit(
-      []<Material M>(const M& m) {
-        if constexpr (requires { m.is_rate_dependent(); }) {
-          return m.is_rate_dependent();
-        } else {
-          return false;
-        }
-      },
-      law);
+  return std::visit([]<Material M>(const M& m) { return flows_with_time(m); }, law);
 }
 
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history) {

@@ -41,9 +41,6 @@ bool is_rate_dependent(const Law& law);
 
 double thickness_stretch(const Law& law, const Vec3& strain, const double* history);
 
-// Green-Lagrange strain at which a history leaves no stress.
-Vec3 stress_free_strain(const Law& law, const double* history);
-
 // Whether the law is a table that has no data where its material is strained so (and answers, if at all, by going on
 // linearly), and the strains, principal or along its axes, that it has data between.
 bool outside_data(const Law& law, const Vec3& strain, const double* history);

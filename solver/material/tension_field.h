@@ -71,13 +71,7 @@ struct TensionField {
     return law.thickness_stretch(relaxed(strain, history).strain, history);
   }
 
-  bool is_rate_dependent() const noexcept {
-    if constexpr (requires { law.is_rate_dependent(); }) {
-      return law.is_rate_dependent();
-    } else {
-      return false;
-    }
-  }
+  bool is_rate_dependent() const noexcept { return flows_with_time(law); }
 
   Vec3 stress_free_strain(const double* history) const noexcept { return law.stress_free_strain(history); }
 

@@ -243,6 +243,17 @@ TEST(Tangent, DoesNotCountWhereAirAndFoilsCancel) {
   EXPECT_FALSE(count_at(critical).first);
 }
 
+// Differences of the residuals by the load factor, at 0.4.
+VecX slope_by_load(Dense& d) {
+  const auto residuals = [&](double load_factor) {
+    d.at.load_factor = load_factor;
+    d.fill();
+    return VecX(d.b);
+  };
+  constexpr double step = 1e-4;
+  return (residuals(0.4 + step) - residuals(0.4 - step)) / (2 * step);
+}
+
 TEST(Tangent, LoadFactorDrivesWhatTheResidualsShow) {
   assembly::Model model = three_foils(900);
   std::get<chamber::Closed>(model.chambers[1].gas).kappa = 1;
@@ -259,13 +270,7 @@ TEST(Tangent, LoadFactorDrivesWhatTheResidualsShow) {
   model.zones.push_back(zone);
   Dense d(model);
   const VecX f = d.f;
-  const auto residuals = [&](double load_factor) {
-    d.at.load_factor = load_factor;
-    d.fill();
-    return VecX(d.b);
-  };
-  constexpr double step = 1e-4;
-  const VecX slope = (residuals(0.4 + step) - residuals(0.4 - step)) / (2 * step);
+  const VecX slope = slope_by_load(d);
   EXPECT_LT(relative_difference(slope.head(d.free), f.head(d.free)), 1e-9);
   EXPECT_LT(relative_difference(-slope.tail(2), -f.tail(2)), 1e-6) << slope.tail(2) << " | " << f.tail(2);
 }
@@ -287,13 +292,7 @@ TEST(Tangent, MovedRimsDriveWhatTheResidualsShow) {
   model.chambers[1].gas = chamber::PrescribedVolume{0.1, 0.2};
   Dense d(model);
   const VecX f = d.f;
-  const auto residuals = [&](double load_factor) {
-    d.at.load_factor = load_factor;
-    d.fill();
-    return VecX(d.b);
-  };
-  constexpr double step = 1e-4;
-  const VecX slope = (residuals(0.4 + step) - residuals(0.4 - step)) / (2 * step);
+  const VecX slope = slope_by_load(d);
   EXPECT_LT(relative_difference(slope.head(d.free), f.head(d.free)), 1e-7);
   EXPECT_LT(relative_difference(-slope.tail(2), -f.tail(2)), 1e-6) << slope.tail(2) << " | " << f.tail(2);
 }

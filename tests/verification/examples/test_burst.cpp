@@ -169,7 +169,9 @@ TEST(BurstTest, IsDrawnOnRequest) {
                           pipeline::drawing::Stroke::dotted,
                           pipeline::drawing::Mark::none,
                           7});
-  write_chart(chart, std::filesystem::path(folder) / "burst_test.svg");
+  const std::filesystem::path file = std::filesystem::path(folder) / "burst_test.svg";
+  write_chart(chart, file);
+  EXPECT_TRUE(std::filesystem::exists(file));
 }
 
 TEST(BurstTest, ReadingTheModuliAsTangentsRaisesThePeak) {
