@@ -151,11 +151,9 @@ TEST(FoilTests, BiaxialOneToTwoIsThatOfATestPiece) {
 }
 
 TEST(FoilTests, TableOfTestPointsFilledUpByALawFollowsThePoints) {
-  // What Galliot and Luchsinger measured is printed in figures alone. In its place: a foil 2 % stronger than the law
-  // that fills up what its 1:1 and 2:1 tests leave open, so that following the law would be an error of 2 %. Where
-  // points and law disagree more, or a finer net follows both, the stresses' ridge along the points makes an even
-  // state of the sheet unstable (net of 40: at 19 %).
-  const Foil model, measured{1.02};
+  // What Galliot and Luchsinger measured is printed in figures alone. In its place: a foil 3 % stronger than the law
+  // that fills up what its 1:1 and 2:1 tests leave open, so that following the law would be an error of 3 %.
+  const Foil model, measured{1.03};
   const material::Logarithmic filling{model.elasticity(), model.flow()};
   const material::Logarithmic truth{measured.elasticity(), measured.flow()};
   constexpr double top = 0.2;
@@ -179,28 +177,26 @@ TEST(FoilTests, TableOfTestPointsFilledUpByALawFollowsThePoints) {
     }
   }
   material::NurbsOptions options;
-  options.net = {20, 20};
+  options.net = {28, 28};
   options.range = {{-0.15, 0.4}};
   const material::PdFit fit = material::fit_pd_nurbs(filling, options, 0, points);
   EXPECT_TRUE(fit.report.monotone);
-  const std::string remark = fmt::format("a foil 2 % stronger than the filling law stands for the measured one; table "
+  const std::string remark = fmt::format("a foil 3 % stronger than the filling law stands for the measured one; table "
                                          "off its points by {:.2f} MPa at most",
                                          fit.report.max / MPa);
   for (const Programme& test : programmes) {
     const PulledFoil pulled(material::PdNurbs{fit.table, false, 0.5}, 20 * test.ratio, 20, top, readings);
     ASSERT_TRUE(pulled.reached()) << pulled.path.reason;
-    for (const int reading : {readings / 2, readings}) {
+    for (const int reading : {readings * 3 / 5, readings * 4 / 5, readings}) {
       const auto i = static_cast<std::size_t>(reading) - 1;
       const double strain = 100 * top * reading / readings;
-      expect({"B10", fmt::format("nominal stress {} at {:.0f} %, MPa", test.name, strain), "0.3 to 2 % off",
+      expect({"B10", fmt::format("nominal stress {} at {:.0f} %, MPa", test.name, strain), "0.32 to 1.99 % off",
               "the tested foil", test.nominal[i] / MPa, pulled.nominal[i] / MPa, 0.0032, "the least of table 6.2", mesh,
               pulled.newton.work().iterations, remark});
-      if (test.ratio == 1) continue;
-      // a foil that flows turns a stress error into one of strain by its hardening modulus
-      expect({"B10", fmt::format("error of the strain across, {} at {:.0f} %, %", test.name, strain), "1.57 % of it",
-              "the tested foil", 0, 100 * (pulled.across[i] - test.across[i]), 100 * fit.report.rms / (80 * MPa),
-              "the table's rms of stress over the hardening modulus", mesh, pulled.newton.work().iterations,
-              fmt::format("the strain is {:.3f} %: hardly any", 100 * test.across[i])});
+      if (test.ratio == 1) continue; // both strains are given
+      expect({"B10", fmt::format("strain across, {} at {:.0f} %, %", test.name, strain), "0.42 to 1.57 % off",
+              "the tested foil", 100 * test.across[i], 100 * pulled.across[i], 0.0157,
+              "the one of table 6.2 for direction 1 of 2:1", mesh, pulled.newton.work().iterations});
     }
   }
 }
