@@ -3,7 +3,7 @@
 // finds. Every row is an assertion too.
 #pragma once
 
-#include <optional>
+#include <array>
 #include <string>
 
 namespace pneuma::tests {
@@ -23,6 +23,11 @@ struct Row {
 
   double error() const;
 };
+
+// Order p of convergence of values on three meshes or in three numbers of steps n0 < n1 < n2:
+//   (v0 - v1) / (v1 - v2) = (n0^-p - n1^-p) / (n1^-p - n2^-p),
+// 0 where they do not converge, 12 at most.
+double observed_order(const std::array<double, 3>& n, const std::array<double, 3>& values);
 
 // Asserts the row, prints it and keeps it for the table. Where PNEUMA_TABLES names a folder, the program writes all of
 // its rows there at its end, as material_examples.csv and .md.
