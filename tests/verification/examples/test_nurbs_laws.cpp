@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "solver/material/nurbs_fit.h"
+#include "solver/material/test_piece.h"
 #include "tests/verification/examples/rubber_sheet.h"
 #include "tests/verification/examples/strip.h"
 #include "tests/verification/examples/table.h"
@@ -89,6 +90,18 @@ double order_in_spans(const std::vector<std::pair<int, double>>& errors) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+// Largest relative error of the nominal stress of a pulled piece of foil up to a stretch.
+double largest_uniaxial_error(const material::Law& table, const material::Law& law, double stretch) {
+  material::TestPiece a(table), b(law);
+  double error = 0;
+  for (int i = 1; i <= 100; ++i) {
+    const double strain = (stretch - 1) * i / 100;
+    EXPECT_TRUE(a.advance(material::uniaxial(), strain) && b.advance(material::uniaxial(), strain));
+    error = std::max(error, std::abs(a.state().nominal_stress()[0] / b.state().nominal_stress()[0] - 1));
+  }
+  return error;
+}
+
 TEST(PdNurbs, FollowsNeoHookeLikeTable42) {
   // A square clamped at its lower edge and pulled by dead forces on the upper one. 89.44 kN (a reading: the print's MN
   // would be 89 GPa) stretch the free part by about 1.5.
@@ -120,15 +133,26 @@ TEST(PdNurbs, FollowsNeoHookeLikeTable42) {
           "errors in %: " + list(errors) + "; print: 89.44 MN and 143 nodes, which fit nothing"});
   expect({"B5", "largest error of stress y, net of 25, %", "0.15", "neo-Hooke", 0, errors[3], 0.15, "the thesis' own",
           mesh, iterations});
-  // another load, below the printed one: shorter stretches on the same spans
-  const Solved less(model(law, 60e3));
-  ASSERT_TRUE(less.converged());
-  const std::array<double, 8> of_less = errors_of(25, 60e3, Fields(less.system, less.at), iterations);
-  expect({"B5", "largest error of displacement y, net of 25, 60 kN, %", "", "neo-Hooke", 0, of_less[1], 0.0165,
-          "the thesis' own at 89.44 kN: the spans are the same, the strains smaller", mesh, iterations,
-          "errors in %: " + list(of_less)});
-  expect({"B5", "largest error of stress y, net of 25, 60 kN, %", "", "neo-Hooke", 0, of_less[3], 0.15,
-          "the thesis' own at 89.44 kN: the spans are the same, the strains smaller", mesh, iterations});
+  // Other loads. A piece whose nominal stress is off by d is off in its stretch by d P / ((l - 1) dP/dl), with
+  // P = mu (l - l^-2) by 1.4 d at most.
+  const material::PdNurbs table{fit(law, 25, 3, {-0.46, 3}).table, false, 0.5};
+  for (const double force : {60e3, 75e3, 110e3}) {
+    const Solved other(model(law, force));
+    ASSERT_TRUE(other.converged());
+    const Fields of(other.system, other.at);
+    const double off = percent * largest_uniaxial_error(table, law, std::sqrt(1 + 2 * largest(of.values[5 + 1])));
+    const std::array<double, 8> e = errors_of(25, force, of, iterations);
+    const std::string name = fmt::format("net of 25, {:g} kN, %", force / 1e3);
+    expect({"B5", "largest error of displacement y, " + name, "", "neo-Hooke", 0, e[1], 1.4 * off,
+            "the table's largest error of uniaxial stress up to this stretch, 1.4 times: the slope of P", mesh,
+            iterations,
+            "errors in %: " + list(e) +
+                (force == 60e3 ? "; first predicted: the thesis' 0.0165 at 89.44 kN, as the strains are smaller; but "
+                                 "errors swing with their place within the spans"
+                               : "")});
+    expect({"B5", "largest error of stress y, " + name, "", "neo-Hooke", 0, e[3], 0.15,
+            "the thesis' own at 89.44 kN: the spans are the same", mesh, iterations});
+  }
   // other nets: cubic stresses, h^4
   std::vector<std::pair<int, double>> all = {{25, largest_of(errors)}};
   for (const int size : {18, 35, 50}) {
