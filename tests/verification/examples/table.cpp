@@ -30,6 +30,10 @@ const char* literature(const std::string& example) {
   return "";
 }
 
+std::string iterations_of(const Row& row) {
+  return row.iterations > 0 ? std::to_string(row.iterations) : "";
+}
+
 std::string quoted(const std::string& text) {
   return '"' + text + '"';
 }
@@ -42,7 +46,7 @@ void write_csv(const std::filesystem::path& path) {
   for (const Row& r : rows()) {
     file << fmt::format("{},{},{},{},{},{:.8g},{:.8g},{:.2e},{:.1e},{},{},{},{}\n", r.example, quoted(r.quantity),
                         quoted(r.thesis), quoted(literature(r.example)), quoted(r.reference_name), r.reference, r.ours,
-                        r.error(), r.tolerance, quoted(r.why), quoted(r.mesh), r.iterations, quoted(r.remark));
+                        r.error(), r.tolerance, quoted(r.why), quoted(r.mesh), iterations_of(r), quoted(r.remark));
   }
 }
 
@@ -53,7 +57,7 @@ void write_markdown(const std::filesystem::path& path) {
   for (const Row& r : rows()) {
     file << fmt::format("| {} | {} | {} | {} | {} | {:.6g} | {:.6g} | {:.1e} | {:.1e}: {} | {} | {} | {} |\n",
                         r.example, r.quantity, r.thesis, literature(r.example), r.reference_name, r.reference, r.ours,
-                        r.error(), r.tolerance, r.why, r.mesh, r.iterations, r.remark);
+                        r.error(), r.tolerance, r.why, r.mesh, iterations_of(r), r.remark);
   }
 }
 

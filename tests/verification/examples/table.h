@@ -18,7 +18,7 @@ struct Row {
   double tolerance = 0; // of |ours / reference - 1|; where the reference is 0, of |ours|
   std::string why;      // this tolerance
   std::string mesh;
-  int iterations = 0; // of Newton, of the whole path
+  int iterations = 0; // of Newton, of the whole path; 0: none to tell
   std::string remark = {};
 
   double error() const;
