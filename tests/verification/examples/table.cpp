@@ -41,9 +41,8 @@ std::string quoted(const std::string& text) {
 
 void write_csv(const std::filesystem::path& path) {
   std::ofstream file(path);
-  file << "example,quantity,thesis,literature,reference,reference value,ours,error,tolerance,reason of the "
-          "tolerance,mesh,"
-          "iterations,remark\n";
+  file << "example,quantity,thesis,literature,reference,reference value,ours,error,tolerance,"
+          "reason of the tolerance,mesh,iterations,remark\n";
   for (const Row& r : rows()) {
     file << fmt::format("{},{},{},{},{},{:.8g},{:.8g},{:.2e},{:.1e},{},{},{},{}\n", r.example, quoted(r.quantity),
                         quoted(r.thesis), quoted(literature(r)), quoted(r.reference_name), r.reference, r.ours,
