@@ -481,6 +481,10 @@ void Builder::read_points(const std::string& name) {
     fail(value->second.mark, fmt::format("{} points are more than a table takes ({}); thin them out",
                                          law.points.size() + law.shear_points.size(), most_points));
   }
+  if (const MissingTests missing = missing_tests(law); !missing.message.empty()) {
+    const Value* data = value->second["data"];
+    problems.push_back({(data != nullptr ? data : value->second["points"])->mark, missing.message, missing.useless});
+  }
   const Value* range = value->second["range"];
   for (const TableLaw::Point& point : law.points) {
     const auto [low, high] = std::minmax(point.strain_1, point.strain_2);
