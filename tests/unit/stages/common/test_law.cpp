@@ -209,6 +209,7 @@ TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
   for (const Material& material : library.materials) {
     library.known.at(material.name).tension_field = false; // uniaxial stress is at its border
     const MaterialLaw made = law_of(library.known, material.name, room);
+    EXPECT_TRUE(!made.fit || made.fit->monotone) << material.name;
     EXPECT_THAT(material.source, HasSubstr(":")) << material.name << ": a mark, then the source";
     EXPECT_EQ(material.density, 1750) << material.name;
     const double stress = uniaxial_stress(made.law, 0.005);
