@@ -88,6 +88,7 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
     const std::size_t first = std::min(part.find_first_not_of(" \t"), part.size());
     part.remove_prefix(first);
     part = part.substr(0, part.find_last_not_of(" \t") + 1);
+    if (part.size() >= 2 && part.front() == '"' && part.back() == '"') part = part.substr(1, part.size() - 2);
     cells.push_back({std::string(part), static_cast<int>(begin + first) + 1});
     if (end == line.size()) return cells;
     begin = end + 1;
@@ -141,6 +142,10 @@ public:
     }
     check_plausible(rows);
     const auto is_mine = [this](const Problem& problem) { return problem.mark.file == name_; };
+    const auto has_weight = [](const Row& row) { return row.weight > 0; };
+    if (!rows.empty() && std::none_of(rows.begin(), rows.end(), has_weight)) {
+      fail(1, "no row has a `weight` above 0");
+    }
     if (rows.empty() && std::none_of(problems_.begin(), problems_.end(), is_mine)) {
       fail(1, has_header ? "the file has a header and no rows"
                          : "the file is empty; test data begin with a header such as `strain_1 [%], stress_1 [MPa]`");
@@ -162,7 +167,13 @@ private:
     separator_ = separator_of(line);
     const std::vector<Cell> cells = cells_of(line, separator_);
     if (cells.size() == 1 && !check_single(cells.front())) return false;
+    const auto is_number = [](const Cell& cell) { return schema::parse_number(cell.text).has_value(); };
+    if (std::all_of(cells.begin(), cells.end(), is_number)) {
+      fail(1, "the first line must name the columns with their units, as in `strain_1 [%], stress_1 [MPa]`");
+      return false;
+    }
     for (const Cell& cell : cells) read_title(cell);
+    if (problems_.size() > before) return false; // a column that is missing may have an unknown name
     for (const std::string& name : needed) {
       const bool is_there = std::any_of(titles_.begin(), titles_.end(), [&](const Title& title) {
         return title.column != nullptr && title.column->name == name;
@@ -189,7 +200,11 @@ private:
     const std::string name = cell.text.substr(0, cell.text.find_last_not_of(" \t", bracket - 1) + 1);
     const auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
     Title title;
-    if (column == columns.end()) {
+    if (cell.text.empty()) {
+      fail(cell.column, "a column without a name; take its separator out of all lines");
+    } else if (name.find('(') != std::string::npos) {
+      fail(cell.column, fmt::format("`{}`: units stand in square brackets, as in `strain_1 [%]`", name));
+    } else if (column == columns.end()) {
       fail(cell.column, fmt::format("unknown column `{}`{}; known: {}", name, schema::suggestion(name, known_names()),
                                     schema::joined(known_names())));
     } else {
@@ -297,6 +312,13 @@ private:
         warn(line_, cells[i].column,
              fmt::format("`{0}` of {1} [-] is {2:.4g} %; is the unit `{0} [%]` meant?", name, cells[i].text,
                          100 * row.*titles_[i].column->value));
+      }
+      constexpr double coldest = 150, hottest = 500; // K
+      if (name == "temperature" && !(row.temperature >= coldest && row.temperature <= hottest) &&
+          told_.insert(name).second) {
+        warn(line_, cells[i].column,
+             fmt::format("`temperature` of {} [{}] is {:.4g} K; is the unit right?", cells[i].text, titles_[i].unit,
+                         row.temperature));
       }
       if (name == "weight" && row.weight < 0) {
         fail(cells[i].column, fmt::format("`weight` must be at least 0, not {}", cells[i].text));

@@ -110,6 +110,10 @@ TestCurve read_test(const std::filesystem::path& file) {
     test.ratio = pure_shear;
     return test;
   }
+  const auto is_unloaded = [](const TestPoint& point) { return point.weight == 0 || point.stress.isZero(0); };
+  if (std::all_of(test.points.begin(), test.points.end(), is_unloaded)) {
+    throw base::InputError(fmt::format("{}: no row with a weight has a stress", name));
+  }
   test.ratio = ratio_of(test.points);
   if (driven_axis(test.ratio) == 1 && std::isnan(rows.front().strain_2)) {
     throw base::InputError(fmt::format("{}:{}:1: the larger stress is `stress_2`: the column `strain_2` is needed",

@@ -36,7 +36,8 @@ workflow::MaterialsResult read_materials(const Options& options) {
     }
   }
   for (const std::string& name : options.names) {
-    if (std::find(result.names.begin(), result.names.end(), name) != result.names.end()) continue;
+    if (result.names.empty() || std::find(result.names.begin(), result.names.end(), name) != result.names.end())
+      continue;
     errors.push_back(fmt::format("{}: there is no material `{}`{}; materials: {}", options.materials.generic_string(),
                                  name, pipeline::schema::suggestion(name, result.names),
                                  pipeline::schema::joined(result.names)));
@@ -84,15 +85,14 @@ public:
       say("  does not depend on the temperature");
     }
     if (material.tension_field) say("  without its tension field, which changes nothing in tension");
-    if (temperatures_of(material) && !options_.temperature && test_temperature_) {
-      say(fmt::format("  at {:.4g} degC, as the tests", celsius(temperature())));
-    }
-    const common::MaterialLaw made = common::law_of(taut, material.name, temperature());
+    const double temperature = temperature_for(material);
+    if (temperature != temperature_without_tests())
+      say(fmt::format("  at {:.4g} degC, as the tests", celsius(temperature)));
+    const common::MaterialLaw made = common::law_of(taut, material.name, temperature);
     common::say_fit(material.name, made);
     show(material.name, made.law, [&](const TestCurve& test) -> std::optional<Law> {
-      const auto range = temperatures_of(material);
-      if (!range || options_.temperature || !test.temperature) return made.law;
-      if (!(*test.temperature >= (*range)[0] && *test.temperature <= (*range)[1])) return std::nullopt;
+      if (!temperatures_of(material) || options_.temperature || !test.temperature) return made.law;
+      if (!has_values(material, *test.temperature)) return std::nullopt;
       return common::law_of(taut, material.name, *test.temperature).law;
     });
   }
@@ -109,13 +109,14 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        workflow::law_at(material, temperature()));
+        workflow::law_at(material, temperature_for(material)));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::size_t count = fitted.hardening.branches.size();
     const std::string name = fmt::format("{}_{}", material.name, count);
     say(fmt::format("{}: the {} hardening branch{} nearest to {}{}; nu and kind of strain as of {}", name, count,
                     count == 1 ? "" : "es", test.name,
-                    static_cast<int>(count) < options_.branches ? ", more fit no better" : "", material.name));
+                    static_cast<int>(count) < options_.branches ? ", a branch more would fit noise" : "",
+                    material.name));
     const Law law = law_of(fitted);
     show(name, law, [&](const TestCurve&) { return law; });
     if (tests_.empty()) say_misfit(misfit(law, test, options_, std::nullopt), test);
@@ -163,8 +164,17 @@ private:
     }
   }
 
-  double temperature() const {
-    return options_.temperature.value_or(test_temperature_.value_or(workflow::Site().temperature));
+  double temperature_without_tests() const { return options_.temperature.value_or(workflow::Site().temperature); }
+
+  // Of the curves: what is asked for, or that of the tests where the material has values there.
+  double temperature_for(const workflow::Material& material) const {
+    const bool as_tests = !options_.temperature && test_temperature_ && has_values(material, *test_temperature_);
+    return as_tests ? *test_temperature_ : temperature_without_tests();
+  }
+
+  bool has_values(const workflow::Material& material, double temperature) const {
+    const auto range = temperatures_of(material);
+    return range && temperature >= (*range)[0] && temperature <= (*range)[1];
   }
 
   // Where a material has values: between its own temperatures, or those of what its table is fitted to.
@@ -217,7 +227,7 @@ private:
 
 int run(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--help") {
+    if (std::string_view(argv[i]) == "--help" || std::string_view(argv[i]) == "-h") {
       std::puts(usage());
       return 0;
     }

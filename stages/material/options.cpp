@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/log.h"
 #include "pipeline/schema/quantity.h"
 #include "pipeline/schema/spelling.h"
 
@@ -49,6 +50,10 @@ void set_strain(Options& options, const std::string& text) {
   options.strain = quantity("--strain", text, "1");
   if (!(options.strain > 0 && options.strain <= 10)) {
     throw InputError(fmt::format("--strain: `{}` is not above 0 and up to 10 (1000 %)", text));
+  }
+  constexpr double usual = 5;
+  if (options.strain >= usual && parse_number(text)) {
+    base::warn(fmt::format("--strain: {0} is {1:g} %; is `{0} %` meant?", text, 100 * options.strain));
   }
 }
 
@@ -152,7 +157,7 @@ Options parse(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!words[i].starts_with("--")) {
+    if (!words[i].starts_with("-")) {
       if (options.materials.empty()) {
         options.materials = words[i];
       } else {

@@ -47,8 +47,9 @@ TEST(TestData, CommentsBlankLinesAndLineEndsOfOtherSystemsAreNothingSpecial) {
 
 TEST(TestData, ColumnsMayBeSeparatedBySemicolonsOrTabs) {
   for (const char* text :
-       {"strain_1 [%];stress_1 [MPa];weight\n0.5;4.5;2\n", "strain_1 [%] ; stress_1 [MPa];weight\n0,5 ; 4,5;2\n",
-        "strain_1 [%]\tstress_1 [MPa]\tweight\n0.5\t 4.5\t2\n",
+       {"strain_1 [%];stress_1 [MPa];weight\n0.5;4.5;2\n",
+        "\"strain_1 [%]\";\"stress_1 [MPa]\";\"weight\"\n0.5;4.5;2\n",
+        "strain_1 [%] ; stress_1 [MPa];weight\n0,5 ; 4,5;2\n", "strain_1 [%]\tstress_1 [MPa]\tweight\n0.5\t 4.5\t2\n",
         "strain_1 [%]\tstress_1 [MPa]\tweight\n5,0e-1\t4,5\t2\n"}) {
     const std::vector<Row> rows = read_good(text);
     ASSERT_EQ(rows.size(), 1u) << text;
@@ -134,6 +135,13 @@ const Bad cases[] = {
      "t.csv:1:13: `|` stands between the columns; write commas, semicolons or tabs"},
     {"UnknownColumn", "strain_1 [-], stress_1 [MPa], stres_2 [MPa]\n0.01, 9, 9\n",
      "t.csv:1:31: unknown column `stres_2`; did you mean `stress_2`?; known: strain_1,"},
+    {"NoHeader", "1, 9\n2, 15\n",
+     "t.csv:1:1: the first line must name the columns with their units, as in `strain_1 [%], stress_1 [MPa]`"},
+    {"RoundBrackets", "strain_1 (%), stress_1 [MPa]\n1, 9\n",
+     "t.csv:1:1: `strain_1 (%)`: units stand in square brackets, as in `strain_1 [%]`"},
+    {"ColumnWithoutName", "strain_1 [%]; stress_1 [MPa];\n1; 9;\n",
+     "t.csv:1:30: a column without a name; take its separator out of all lines"},
+    {"NoWeight", "strain_1 [%], stress_1 [MPa], weight\n1, 9, 0\n", "no row has a `weight` above 0"},
     {"ColumnTwice", "strain_1 [-], stress_1 [MPa], stress_1 [Pa]\n0.01, 9, 9\n",
      "t.csv:1:31: a second column `stress_1`"},
     {"MissingColumn", "# test\nstrain_1 [-]\n0.01\n", "t.csv:2:1: the column `stress_1` is missing"},
@@ -189,6 +197,8 @@ const Bad odd[] = {
      "are the units of `stress_1` and `strain_1` right?\n"},
     {"PascalsAsMegapascals", "shear_strain [-], shear_stress [MPa]\n0.01, 3e6\n",
      "t.csv:2:1: warning: 3e+06 MPa at a strain of 1 % mean a modulus of 3e+08 MPa"},
+    {"CelsiusAsKelvin", "strain_1 [%], stress_1 [MPa], temperature [K]\n1, 9, 23\n2, 16, 23\n",
+     "t.csv:2:7: warning: `temperature` of 23 [K] is 23 K; is the unit right?\n"},
     {"GripsThatSlip", "strain_1 [%], stress_1 [MPa]\n1, 9\n2, 16\n3, 18\n4, 12\n5, 11\n",
      "t.csv:5:1: warning: `stress_1` falls from 18 MPa (line 4) to 12 MPa while `strain_1` rises from 3 % to 4 %: do "
      "the "
