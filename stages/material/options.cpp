@@ -133,7 +133,7 @@ const Switch& switch_called(const std::string& name) {
 std::string name_of(const Ratio& ratio) {
   if (ratio.shear) return "shear";
   if (ratio.b == 0) return "uniaxial";
-  return fmt::format("{:g}:{:g}", ratio.a, ratio.b);
+  return fmt::format("{:.4g}:{:.4g}", ratio.a, ratio.b);
 }
 
 const char* usage() {
