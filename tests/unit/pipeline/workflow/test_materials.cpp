@@ -520,6 +520,19 @@ TEST(TableOfTests, IsFilledByALawWithoutAWord) {
   EXPECT_EQ(told_of(filled, tests_with({1})), "");
 }
 
+TEST(TableOfTests, KnowsNoTemperatureAndSaysSoWhereTheTestsDo) {
+  const auto at = [](double first, double second) {
+    return fmt::format("strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa], temperature [degC]\n"
+                       "1, 0, 9, 0, {}\n1, 1, 16, 16, {}\n",
+                       first, second);
+  };
+  const std::string keys = "law: pd_nurbs, data: a.csv";
+  EXPECT_EQ(told_of(keys, at(21, 24)), "");
+  EXPECT_THAT(told_of(keys, at(20, 50)), HasSubstr("w.yaml:4:31: warning: the tests were taken at 20 to 50 degC"));
+  EXPECT_THAT(told_of(keys, at(50, 52)),
+              HasSubstr("w.yaml:4:31: warning: the tests were taken at 51 degC and the site has 23 degC"));
+}
+
 TEST(TableOfTests, AlongAxesNeedsAUniaxialOneAlongEach) {
   const std::string keys = "law: le_nurbs, data: a.csv, shear_data: s.csv";
   EXPECT_EQ(told_of(keys, tests_with({1, 0.5, 0}, true)), "");
