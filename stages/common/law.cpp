@@ -176,7 +176,7 @@ std::string text_of(const material::FitReport& fit) {
 }
 
 std::vector<std::string> warnings_of(const std::string& name, const MaterialLaw& made) {
-  constexpr const char* help = "more weight on smoothing (1e-3 is much), a coarser net or more points may help";
+  constexpr const char* help = "more weight on smoothing (1e-5 to 1e-3), a coarser net or more points may help";
   std::vector<std::string> warnings;
   if (made.fit && !made.fit->monotone) {
     warnings.push_back(
