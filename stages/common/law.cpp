@@ -168,6 +168,7 @@ std::string text_of(const material::FitReport& fit) {
       fmt::format("rms {:.2g} MPa, at most {:.2g} MPa ({:.2g} % of {:.3g} MPa) at strains ({:.3g}, {:.3g})",
                   fit.rms / megapascal, fit.max / megapascal, 100 * fit.max / fit.largest_stress,
                   fit.largest_stress / megapascal, fit.where[0], fit.where[1]);
+  text += fmt::format("; smoothing {:.0e}", fit.smoothing);
   if (fit.uncovered > 0) text += fmt::format("; {:.0f} % of the table holds no point", 100 * fit.uncovered);
   if (fit.integrability_defect > 0) {
     text += fmt::format("; without a potential, integrability defect {:.2g}", fit.integrability_defect);
@@ -176,7 +177,7 @@ std::string text_of(const material::FitReport& fit) {
 }
 
 std::vector<std::string> warnings_of(const std::string& name, const MaterialLaw& made) {
-  constexpr const char* help = "more weight on smoothing (1e-5 to 1e-3), a coarser net or more points may help";
+  constexpr const char* help = "a coarser net, more points or, where `smoothing` is given, more of it may help";
   std::vector<std::string> warnings;
   if (made.fit && !made.fit->monotone) {
     warnings.push_back(
@@ -236,6 +237,7 @@ void summarize(const MaterialLaws& laws, Summary& summary) {
       summary.set(key + "largest_stress", fit.largest_stress);
       summary.set(key + "strain_1", fit.where[0]);
       summary.set(key + "strain_2", fit.where[1]);
+      summary.set(key + "smoothing", fit.smoothing);
       summary.set(key + "uncovered", fit.uncovered);
       summary.set(key + "monotone", fit.monotone);
       summary.set(key + "integrability_defect", fit.integrability_defect);
