@@ -405,8 +405,9 @@ private:
   void read_list(const Option& option, const Node& node, const std::string& path, Value& value) {
     const std::size_t count = node.items.size();
     if (count < option.min_items || count > option.max_items) {
-      const std::string wanted = option.min_items == option.max_items ? fmt::format("{}", option.min_items)
-                                                                      : fmt::format("at least {}", option.min_items);
+      const bool few = count < option.min_items;
+      const char* bound = option.min_items == option.max_items ? "" : few ? "at least " : "at most ";
+      const std::string wanted = fmt::format("{}{}", bound, few ? option.min_items : option.max_items);
       fail(node.mark, fmt::format("{} must have {} entries, not {}", title(path), wanted, count));
       value.valid = false;
     }

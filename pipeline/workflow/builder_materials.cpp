@@ -261,6 +261,15 @@ ViscositySettings Builder::viscosity_of(const Value& viscosity, const J2Law& law
                      "from there on",
                      law.hardening.front().stress / 1e6, text_of(viscosity, "threshold")));
   }
+  // the flow stress falls from the threshold on as the yield stress does
+  double fall = 0;
+  for (const HardeningBranch& branch : law.hardening) fall = std::max(fall, law.hardening[0].stress - branch.stress);
+  if (out.threshold && *out.threshold < fall) {
+    fail(viscosity["threshold"]->mark,
+         fmt::format("`threshold` must be at least {:g} MPa, by which the softening lowers the yield stress, not {}: "
+                     "the foil would flow without stress",
+                     fall / 1e6, text_of(viscosity, "threshold")));
+  }
   return out;
 }
 
@@ -322,7 +331,7 @@ TableLaw Builder::table_of(const Value& material) {
                                     "[{}, {}] does not",
                                     range->items[0].text, range->items[1].text));
     }
-  } else if (!law.fit_to.empty()) {
+  } else if (!law.fit_to.empty() && material.find("range") == nullptr) {
     fail(material.mark, "`range` is missing: another material has strains without end; say which the table shall hold");
   }
   if (const Value* points = material["points"]) {

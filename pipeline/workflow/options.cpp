@@ -488,7 +488,7 @@ Options table_law(bool along_axes) {
              "of strains and stresses in `data`")
           .otherwise("engineering"),
       word("fit_to", "another material that the table shall follow"),
-      list("net", integer("n", "control points").between(3, 1000, "from 3 to 1000"),
+      list("net", integer("n", "control points").between(3, 200, "from 3 to 200"),
            "control points of the table along both strains")
           .items(2, 2)
           .otherwise("[25, 25]"),

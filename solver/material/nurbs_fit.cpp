@@ -143,11 +143,20 @@ TableDomain domain_of(std::span<const StressPoint> points, StrainRange range, bo
   return domain;
 }
 
-// Strains at which a law is asked: borders of spans and two places between.
-std::vector<double> places_in(const std::vector<double>& breaks) {
+// Into how many parts the spans of a row of the net are cut where a law is asked: three, of coarse nets so many that
+// there are twice as many as the potential has control points in the row.
+int parts_of_span(int net, int degree) {
+  const int spans = net - degree;
+  return std::max(3, (2 * (net + 1) + spans - 1) / spans);
+}
+
+// Strains at which a law is asked: borders of spans and the places between that cut them into equal parts.
+std::vector<double> places_in(const std::vector<double>& breaks, int parts = 3) {
   std::vector<double> places;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
-    for (const double part : {0.0, 1.0 / 3, 2.0 / 3}) places.push_back(breaks[i] + part * (breaks[i + 1] - breaks[i]));
+    for (int part = 0; part < parts; ++part) {
+      places.push_back(breaks[i] + static_cast<double>(part) / parts * (breaks[i + 1] - breaks[i]));
+    }
   }
   places.push_back(breaks.back());
   return places;
@@ -505,13 +514,14 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
     in_r.push_back(std::pow(reach(yield, range), static_cast<double>(i) / spans));
     in_v.push_back(-1 + 2.0 * i / spans);
   }
+  // in the middles of the parts: not at v = -1 and 1, where a direction is lost
+  const int parts = parts_of_span(options.net[0], options.degree);
   std::vector<Vec2> strains;
-  constexpr double parts[] = {1.0 / 6, 0.5, 5.0 / 6}; // not at v = -1 and 1, where a direction is lost
-  for (int i = 0; i < 3 * spans; ++i) {
-    for (int j = 0; j < 3 * spans; ++j) {
+  for (int i = 0; i < parts * spans; ++i) {
+    for (int j = 0; j < parts * spans; ++j) {
       const auto in = [&](const std::vector<double>& ends, int place) {
-        const auto span = static_cast<std::size_t>(place / 3);
-        return ends[span] + parts[place % 3] * (ends[span + 1] - ends[span]);
+        const auto span = static_cast<std::size_t>(place / parts);
+        return ends[span] + (place % parts + 0.5) / parts * (ends[span + 1] - ends[span]);
       };
       const Vec2 e = strains_at(yield, in(in_r, i), in(in_v, j));
       if (e.minCoeff() > -0.5) strains.push_back(e);
@@ -543,9 +553,12 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
   PdFit fit{std::move(table), {}};
   fit.report.smoothing = smoothing_of_law;
   fit.report.uncovered = beyond.residuals.uncovered;
-  std::vector<StressPoint> held;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(held),
-               [&](const StressPoint& p) { return fit.table->domain.holds(p.e1, p.e2); });
+  // where it was not fitted, too, and at the corners of the range
+  const std::vector<double> places = places_in(strain_breaks(range, options.net[0], {}));
+  const std::vector<Vec2> between = pairs(places, places);
+  strains.insert(strains.end(), between.begin(), between.end());
+  std::erase_if(strains, [&](const Vec2& e) { return !fit.table->domain.holds(e[0], e[1]); });
+  const std::vector<StressPoint> held = sample(law, strains, time);
   report(fit.table, held, held.size(), strains, fit.report);
   return fit;
 }
@@ -718,7 +731,8 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
     if (!knee) knee = best_knee(law, range, options.net[0] - options.degree, time);
   }
   const double fill = yield ? fill_of_rest : fill_of_law;
-  const std::vector<double> places = places_in(strain_breaks(range, options.net[0] - options.degree, knee));
+  const std::vector<double> places = places_in(strain_breaks(range, options.net[0] - options.degree, knee),
+                                               parts_of_span(options.net[0], options.degree));
   std::vector<StressPoint> all(points.begin(), points.end());
   for (StressPoint& point : sample(law, pairs(places, places), time)) {
     if (point.e2 > point.e1) continue; // its mirror image is there
@@ -750,8 +764,10 @@ LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
   const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
   const std::vector<StressPoint> points =
       sample(law,
-             pairs(places_in(strain_breaks(range, options.net[0] - options.degree, knee)),
-                   places_in(strain_breaks(range, options.net[1] - options.degree, knee))),
+             pairs(places_in(strain_breaks(range, options.net[0] - options.degree, knee),
+                             parts_of_span(options.net[0], options.degree)),
+                   places_in(strain_breaks(range, options.net[1] - options.degree, knee),
+                             parts_of_span(options.net[1], options.degree))),
              time);
   std::vector<ShearPoint> shear;
   const double largest = range.max - range.min; // 2 E12 of the principal strains max and min

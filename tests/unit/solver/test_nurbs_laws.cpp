@@ -396,6 +396,38 @@ TEST(PdNurbsFit, ConvergesBeyondYieldWithTheOrderOfItsDegree) {
   }
 }
 
+TEST(PdNurbsFit, ReportsItsErrorInAllOfTheRangeForEveryNet) {
+  const auto reports = [](const auto& law, const NurbsOptions& options) {
+    const PdFit fit = fit_pd_nurbs(Law(law), options);
+    const PdNurbs table{fit.table};
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    double largest = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const StrainRange range = *options.range;
+      const auto strain = [&] { return range.min + std::round(30 * unit(random)) / 30 * (range.max - range.min); };
+      const Vec3 at(strain(), strain(), 0);
+      std::array<double, 10> history{};
+      Response expected;
+      EXPECT_EQ(law.evaluate(at, history.data(), history.data() + 5, 0, expected), Status::ok);
+      largest = std::max(largest, (answer(table, at).stress - expected.stress).cwiseAbs().maxCoeff());
+    }
+    // what rounding leaves, and less than twice between the places that the report looks at
+    EXPECT_LT(largest, 2 * fit.report.max + 1e-12 * fit.report.largest_stress)
+        << options.net[0] << ' ' << options.degree;
+    EXPECT_GT(fit.report.largest_stress, 0);
+    return fit.report.max / fit.report.largest_stress;
+  };
+  const double yield = 16e6 * (1 - 0.43) / 1100e6; // equal strains at which ETFE yields
+  for (const StrainRange range : {StrainRange{-0.1, 0.2}, {0, 1.02 * yield}}) {
+    for (const auto& [size, degree] : {std::pair(4, 3), {5, 3}, {7, 6}, {25, 3}}) {
+      EXPECT_LT(reports(etfe, net(size, degree, range)), 0.02) << size; // of one span in each direction, too
+    }
+  }
+  reports(MooneyRivlin{1e6, 0}, net(7, 6, {-0.3, 1}));
+  reports(MooneyRivlin{1e6, 0}, net(5, 3, {-0.3, 1}));
+}
+
 TEST(PdNurbs, OfALawThatYieldsIsTheLawUntilThen) {
   const PdNurbs table{fit_pd_nurbs(Law(etfe), net(12, 2, {-0.05, 0.1})).table};
   for (const Vec3& strain : {Vec3(0.01, 0.002, 0.003), Vec3(-0.006, 0.004, 0), Vec3(0.007, 0.007, 0), Vec3(0, 0, 0)}) {

@@ -331,6 +331,25 @@ const Bad cases[] = {
      "law: j2, E: 1 GPa, nu: 0.4, softening: on, hardening: [{stress: 15 MPa, modulus: @-900 MPa}, {stress: 12 MPa, "
      "modulus: 0 MPa}]",
      {"the yield stress falls too steeply: as a plastic modulus -900 MPa, which must be above -833.3 MPa"}},
+    {"SofteningBelowWhereFlowBegins",
+     elastic,
+     "law: j2, E: 1 GPa, nu: 0.4, softening: on, hardening: [{stress: 15 MPa, modulus: -90 MPa}, {stress: 5 MPa, "
+     "modulus: 0 MPa}], viscosity: {model: peric, mu: 1 s, epsilon: 1, threshold: @9 MPa}",
+     {"`threshold` must be at least 10 MPa, by which the softening lowers the yield stress, not 9 MPa"}},
+    {"OgdenOfNineTerms",
+     elastic,
+     "law: ogden, terms: @[{mu: 1 MPa, alpha: 1}, {mu: 1 MPa, alpha: 2}, {mu: 1 MPa, alpha: 3}, {mu: 1 MPa, alpha: 4}, "
+     "{mu: 1 MPa, alpha: 5}, {mu: 1 MPa, alpha: 6}, {mu: 1 MPa, alpha: 7}, {mu: 1 MPa, alpha: 8}, {mu: 1 MPa, alpha: "
+     "9}]",
+     {"`terms` must have at most 8 entries, not 9"}},
+    {"NetTooFine",
+     elastic,
+     "law: pd_nurbs, data: a.csv, net: [@201, 200]",
+     {"entry 1 of `net` must be from 3 to 200, not 201"}},
+    {"RangeBelowAllStrains",
+     elastic,
+     "law: pd_nurbs, fit_to: foil, range: [@-0.6, 0.2], density: 1 g/cm3}\n  foil: {law: elastic, E: 1 GPa, nu: 0.4",
+     {"entry 1 of `range` must be above -0.5, up to 10, not -0.6"}},
     {"TangentModulusAboveE",
      elastic,
      "law: j2, E: 1 GPa, nu: 0.4, modulus: tangent, hardening: [{stress: 15 MPa, modulus: @1 GPa}]",
