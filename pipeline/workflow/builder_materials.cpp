@@ -264,9 +264,9 @@ ViscositySettings Builder::viscosity_of(const Value& viscosity, const J2Law& law
   // the flow stress falls from the threshold on as the yield stress does
   double fall = 0;
   for (const HardeningBranch& branch : law.hardening) fall = std::max(fall, law.hardening[0].stress - branch.stress);
-  if (out.threshold && *out.threshold < fall) {
+  if (out.threshold && fall > 0 && *out.threshold <= fall) {
     fail(viscosity["threshold"]->mark,
-         fmt::format("`threshold` must be at least {:g} MPa, by which the softening lowers the yield stress, not {}: "
+         fmt::format("`threshold` must be above {:g} MPa, by which the softening lowers the yield stress, not {}: "
                      "the foil would flow without stress",
                      fall / 1e6, text_of(viscosity, "threshold")));
   }

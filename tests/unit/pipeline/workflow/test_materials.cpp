@@ -334,8 +334,8 @@ const Bad cases[] = {
     {"SofteningBelowWhereFlowBegins",
      elastic,
      "law: j2, E: 1 GPa, nu: 0.4, softening: on, hardening: [{stress: 15 MPa, modulus: -90 MPa}, {stress: 5 MPa, "
-     "modulus: 0 MPa}], viscosity: {model: peric, mu: 1 s, epsilon: 1, threshold: @9 MPa}",
-     {"`threshold` must be at least 10 MPa, by which the softening lowers the yield stress, not 9 MPa"}},
+     "modulus: 0 MPa}], viscosity: {model: peric, mu: 1 s, epsilon: 1, threshold: @10 MPa}",
+     {"`threshold` must be above 10 MPa, by which the softening lowers the yield stress, not 10 MPa"}},
     {"OgdenOfNineTerms",
      elastic,
      "law: ogden, terms: @[{mu: 1 MPa, alpha: 1}, {mu: 1 MPa, alpha: 2}, {mu: 1 MPa, alpha: 3}, {mu: 1 MPa, alpha: 4}, "
