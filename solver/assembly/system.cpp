@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -271,6 +272,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
   }
   place_edges(configuration);
   load_factor_ = configuration.load_factor;
+  is_new_ = false;
   base::parallel_chunks(threads_, foils_.size(),
                         [&](std::size_t i) { evaluate_foil(foils_[i], configuration, with_tangent); });
 
@@ -305,6 +307,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
     if (!std::isfinite(line.relative)) return {false, "a chamber's law is not finite"}; // std::max would drop a NaN
     balance.gas = std::max(balance.gas, std::abs(line.relative));
   }
+  is_new_ = true;
   return balance;
 }
 
@@ -422,8 +425,9 @@ std::string System::why_failed(std::size_t foil, const Configuration& configurat
 }
 
 void System::accept_history() {
+  if (!std::exchange(is_new_, false)) return; // a second time it would hide the step before
   before_.swap(accepted_);
-  accepted_ = new_; // which stays: accepted again it is the same
+  accepted_ = new_; // which stays: that of the last evaluation
   accepted_time_step_ = time_step_;
 }
 
@@ -434,6 +438,7 @@ Balance System::evaluate_accepted(Configuration& configuration, bool with_tangen
   };
   swap();
   Balance balance = evaluate(configuration, with_tangent);
+  is_new_ = false;
   swap();
   return balance;
 }
@@ -443,6 +448,7 @@ void System::restore(Memory memory) {
   accepted_ = std::move(memory.accepted);
   time_step_ = memory.time_step;
   accepted_time_step_ = memory.accepted_time_step;
+  is_new_ = false;
 }
 
 System::Flow System::flow() const {
