@@ -18,10 +18,10 @@ namespace pneuma::solver::assembly {
 
 namespace {
 
-// The symmetric part of a load stiffness: that is what the tangent takes (numerics 2).
-template <geometry::ElementType E>
-void symmetrize(geometry::PressureElement<E>& p) {
-  p.derivative = (0.5 * (p.derivative + p.derivative.transpose())).eval();
+// The symmetric part is what the tangent takes of a load stiffness (numerics 2), and of a law without a potential.
+template <int Size>
+void symmetrize(Eigen::Matrix<double, Size, Size>& matrix) {
+  matrix = (0.5 * (matrix + matrix.transpose())).eval();
 }
 
 } // namespace
@@ -184,6 +184,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
       const Eigen::Vector<double, size> change = derivative * move;
       add(e, change.data(), factor, drive);
     };
+    const bool symmetric = material::has_potential(foil.membrane.law);
     failed_[index] =
         element::membrane_forces(foil.membrane, configuration.positions, accepted_[index], new_[index], time_step_,
                                  with_tangent, foil.energy, [&](const element::ElementBatch& batch) {
@@ -191,8 +192,14 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
                                      add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
                                      if (!with_tangent) continue;
                                      const double* tangent = batch.tangent + e * size * size;
-                                     linear::scatter_add(foil.scatter, batch.first + e, tangent, foil.tangent);
                                      add_moves(batch.first + e, Eigen::Map<const ElementMatrix>(tangent), -1.0);
+                                     if (symmetric) {
+                                       linear::scatter_add(foil.scatter, batch.first + e, tangent, foil.tangent);
+                                       continue;
+                                     }
+                                     ElementMatrix part = Eigen::Map<const ElementMatrix>(tangent);
+                                     symmetrize(part);
+                                     linear::scatter_add(foil.scatter, batch.first + e, part.data(), foil.tangent);
                                    }
                                  });
     if (failed_[index]) return;
@@ -206,7 +213,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
     };
     const auto subtract_load_stiffness = [&](Index e, double pressure) {
       add_moves(e, Eigen::Map<const ElementMatrix>(p.derivative.data()), pressure);
-      symmetrize<E>(p);
+      symmetrize(p.derivative);
       p.derivative *= -pressure;
       linear::scatter_add(foil.scatter, e, p.derivative.data(), foil.tangent);
     };
