@@ -7,20 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "geometry/nurbs/fit.h"
+#include "tests/unit/message_of.h"
 
 namespace pneuma::tests {
 namespace {
 
 using namespace geometry::nurbs;
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 std::vector<CurveObservation> sampled(double (*f)(double), int count, double first, double last) {
   std::vector<CurveObservation> observations;
