@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,6 +24,10 @@ struct Switch {
   std::size_t count = 0; // of the values behind it
   std::function<void(Options&, const Words&)> set;
 };
+
+inline bool asks_for_help(int argc, char** argv) {
+  return std::find(argv + 1, argv + argc, std::string_view("--help")) != argv + argc;
+}
 
 // Reads a command line into `options`: every switch with its values, every other word by `take`. Throws InputError
 // with the nearest switch and the usage where one is unknown or lacks a value.

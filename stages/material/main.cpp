@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdio>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/schema/command_line.h"
 #include "pipeline/schema/spelling.h"
 #include "stages/common/law.h"
 #include "stages/material/fit.h"
@@ -166,11 +166,9 @@ private:
 };
 
 int run(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--help") {
-      std::puts(usage());
-      return 0;
-    }
+  if (pipeline::schema::asks_for_help(argc, argv)) {
+    std::puts(usage());
+    return 0;
   }
   const Options options = parse(argc, argv);
   const workflow::MaterialsResult read = read_materials(options);
