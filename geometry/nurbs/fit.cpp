@@ -80,7 +80,7 @@ void check_determined(MatX forms, const std::string& what) {
   }
 }
 
-// `unknown(cell, local)` is the number of an unknown; some of a cell may be one.
+// `unknown(cell, local)` is the number of an unknown; some of a cell may be one. A negative one is known to be zero.
 template <class F>
 VecX solve(const Normal& normal, int unknowns, const F& unknown, bool smoothed) {
   std::vector<Eigen::Triplet<double>> triplets;
@@ -89,9 +89,11 @@ VecX solve(const Normal& normal, int unknowns, const F& unknown, bool smoothed) 
     const MatX& local = normal.matrices[cell];
     for (Eigen::Index a = 0; a < local.rows(); ++a) {
       const int i = unknown(cell, static_cast<int>(a));
+      if (i < 0) continue;
       right[i] += normal.rights[cell][a];
       for (Eigen::Index b = 0; b <= a; ++b) {
         const int j = unknown(cell, static_cast<int>(b));
+        if (j < 0) continue;
         const double twice = i == j && a != b ? 2 : 1; // both halves fall on the diagonal
         triplets.emplace_back(std::max(i, j), std::min(i, j), twice * local(a, b));
       }
@@ -211,11 +213,16 @@ SurfaceFit fit(const Knots& u, const Knots& v, std::span<const SurfaceObservatio
   if (settings.symmetric && (u.degree != v.degree || u.values != v.values)) {
     throw std::invalid_argument("a symmetric surface has the same knots in both directions");
   }
+  const int flat = settings.flat_start;
+  if (flat < 0 || flat > u.degree || (flat > 0 && settings.symmetric)) {
+    throw std::invalid_argument(
+        fmt::format("a flat start takes 0 to {} rows of a surface that is not symmetric, not {}", u.degree, flat));
+  }
   const double weights = sum_of_weights(observations);
   const int columns = v.functions();
-  const int unknowns = settings.symmetric ? columns * (columns + 1) / 2 : u.functions() * columns;
+  const int unknowns = settings.symmetric ? columns * (columns + 1) / 2 : (u.functions() - flat) * columns;
   const auto unknown = [&](int i, int j) { // of a control value; symmetric: those with j <= i
-    if (!settings.symmetric) return i * columns + j;
+    if (!settings.symmetric) return i < flat ? -1 : (i - flat) * columns + j;
     return std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j);
   };
   const int firsts_v = columns - v.degree;
@@ -315,7 +322,9 @@ SurfaceFit fit(const Knots& u, const Knots& v, std::span<const SurfaceObservatio
   result.surface.u = u;
   result.surface.v = v;
   for (int i = 0; i < u.functions(); ++i) {
-    for (int j = 0; j < columns; ++j) result.surface.points.push_back(Point<1>(solution[unknown(i, j)]));
+    for (int j = 0; j < columns; ++j) {
+      result.surface.points.push_back(Point<1>(i < flat ? 0.0 : solution[unknown(i, j)]));
+    }
   }
   std::vector<double> each;
   for (const SurfaceObservation& o : observations) {
@@ -324,7 +333,9 @@ SurfaceFit fit(const Knots& u, const Knots& v, std::span<const SurfaceObservatio
     form_of(o.order_u, o.order_v);
     double r = -o.value;
     for (int k = 0; k < form.size(); ++k) {
-      r += form[k] * solution[unknown(in_u.first + k / (v.degree + 1), in_v.first + k % (v.degree + 1))];
+      const int row = in_u.first + k / (v.degree + 1);
+      const int column = in_v.first + k % (v.degree + 1);
+      r += form[k] * result.surface.points[static_cast<std::size_t>(row * columns + column)][0];
     }
     each.push_back(r);
   }

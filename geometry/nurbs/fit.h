@@ -33,6 +33,8 @@ struct FitSettings {
   // many powers of the size.
   bool of_gradient = false;
   bool symmetric = false; // surfaces: f(u, v) = f(v, u), with equal knots
+  // Surfaces that are not symmetric: f and its derivatives by u of an order below this one are zero at the first u.
+  int flat_start = 0;
 };
 
 // Residuals r = fitted - observed of a fit, in the unit of the observations.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/nurbs/fit.h"
+#include "solver/material/pd_nurbs.h"
 
 namespace pneuma::solver::material {
 
@@ -130,6 +131,14 @@ std::vector<double> places_in(const std::vector<double>& breaks) {
   return places;
 }
 
+std::vector<Vec2> pairs(std::span<const double> first, std::span<const double> second) {
+  std::vector<Vec2> result;
+  for (const double a : first) {
+    for (const double b : second) result.emplace_back(a, b);
+  }
+  return result;
+}
+
 // What a law's material answers, without its tension field, in one step from the unloaded state.
 bool ask(const Law& law, const Vec3& strain, double time, Response& response) {
   std::vector<double> history(static_cast<std::size_t>(2 * history_components(law)), 0.0);
@@ -193,7 +202,7 @@ std::vector<std::optional<double>> knees(StrainRange range) {
 std::optional<double> best_knee(const Law& law, StrainRange range, int spans, double time) {
   const double largest = std::max(-logarithmic(range.min), logarithmic(range.max));
   const std::vector<double> lines = strain_breaks(range, 8, largest / 10);
-  const std::vector<StressPoint> points = sample(law, lines, lines, time);
+  const std::vector<StressPoint> points = sample(law, pairs(lines, lines), time);
   std::vector<double> sizes;
   for (const StressPoint& point : points) sizes.push_back(std::hypot(point.s1, point.s2));
   const double usual = median(std::move(sizes));
@@ -231,58 +240,45 @@ struct TableStress {
   double d11, d12, d21, d22;
 };
 
-TableStress derivatives(const nurbs::Surface<1>& potential, double e1, double e2) {
-  const nurbs::SurfaceJet<1> w = nurbs::evaluate(potential, e1, e2);
-  return {w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
+// Of strains without shear.
+TableStress along_axes(const Response& r) {
+  return {r.stress[0], r.stress[1], r.tangent(0, 0), r.tangent(0, 1), r.tangent(1, 0), r.tangent(1, 1)};
 }
 
-// Monotony and integrability, looked for at the places of a law's samples.
+// The least slope of a Kirchhoff stress by its own strain.
+double least_slope(const TableStress& at, const Vec2& e) {
+  return std::min(2 * at.first + (1 + 2 * e[0]) * at.d11, 2 * at.second + (1 + 2 * e[1]) * at.d22);
+}
+
+// Monotony and integrability, looked for at these strains.
 template <class F>
-void judge(const F& stress, const TableDomain& domain, const std::vector<double>& in_first,
-           const std::vector<double>& in_second, FitReport& report) {
+void judge(const F& stress, const TableDomain& domain, std::span<const Vec2> places, FitReport& report) {
   double least = std::numeric_limits<double>::infinity();
   double stiffest = 0;
   double defect = 0;
-  for (const double e1 : places_in(in_first)) {
-    for (const double e2 : places_in(in_second)) {
-      if (!domain.holds(e1, e2)) continue;
-      const TableStress at = stress(e1, e2);
-      const double slope = std::min(2 * at.first + (1 + 2 * e1) * at.d11, 2 * at.second + (1 + 2 * e2) * at.d22);
-      if (slope < least) {
-        least = slope;
-        report.not_monotone = Vec2(e1, e2);
-      }
-      stiffest = std::max({stiffest, std::abs(at.d11), std::abs(at.d12), std::abs(at.d21), std::abs(at.d22)});
-      defect = std::max(defect, std::abs(at.d12 - at.d21));
+  for (const Vec2& e : places) {
+    if (!domain.holds(e[0], e[1])) continue;
+    const TableStress at = stress(e[0], e[1]);
+    const double slope = least_slope(at, e);
+    if (slope < least) {
+      least = slope;
+      report.not_monotone = e;
     }
+    stiffest = std::max({stiffest, std::abs(at.d11), std::abs(at.d12), std::abs(at.d21), std::abs(at.d22)});
+    defect = std::max(defect, std::abs(at.d12 - at.d21));
   }
   report.monotone = least >= 0;
   report.integrability_defect = stiffest > 0 ? defect / stiffest : 0;
 }
 
-// Observations of stresses as derivatives of a potential, or as values of the first or second stress.
-struct Observations {
-  std::vector<nurbs::SurfaceObservation> list;
-  std::vector<Vec2> strains; // of each
-  std::size_t reported = 0;  // the first of them, not those that fill
-};
-
-// The first `reported` points are those whose residuals are reported.
-Observations gradients(std::span<const StressPoint> points, std::size_t reported) {
-  Observations result;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const StressPoint& p = points[i];
-    if (!std::isnan(p.s1)) {
-      result.list.push_back({p.e1, p.e2, 1, 0, p.s1, p.weight});
-      result.strains.emplace_back(p.e1, p.e2);
-    }
-    if (!std::isnan(p.s2)) {
-      result.list.push_back({p.e1, p.e2, 0, 1, p.s2, p.weight});
-      result.strains.emplace_back(p.e1, p.e2);
-    }
-    if (i < reported) result.reported = result.list.size();
+// Stresses as derivatives of a potential.
+std::vector<nurbs::SurfaceObservation> gradients(std::span<const StressPoint> points) {
+  std::vector<nurbs::SurfaceObservation> result;
+  for (const StressPoint& p : points) {
+    if (!std::isnan(p.s1)) result.push_back({p.e1, p.e2, 1, 0, p.s1, p.weight});
+    if (!std::isnan(p.s2)) result.push_back({p.e1, p.e2, 0, 1, p.s2, p.weight});
   }
-  if (result.list.empty()) throw std::invalid_argument("a table needs points with stresses");
+  if (result.empty()) throw std::invalid_argument("a table needs points with stresses");
   return result;
 }
 
@@ -292,32 +288,36 @@ double sum_of_weights(const std::vector<nurbs::SurfaceObservation>& observations
   return sum;
 }
 
-void report_residuals(const nurbs::Residuals& residuals, const Observations& observations, FitReport& report) {
-  for (std::size_t i = observations.reported; i < observations.list.size(); ++i) {
-    report.max_from_fill = std::max(report.max_from_fill, std::abs(residuals.each[i]));
-  }
+// How a table's stress follows the first `reported` of the points and, beyond them, those that fill.
+template <class F>
+void report_misfit(const F& stress, std::span<const StressPoint> points, std::size_t reported, FitReport& report) {
   double sum = 0;
   double weights = 0;
-  for (std::size_t i = 0; i < observations.reported; ++i) {
-    const nurbs::SurfaceObservation& o = observations.list[i];
-    const double r = residuals.each[i];
-    sum += o.weight * r * r;
-    weights += o.weight;
-    if (o.weight == 0) continue;
-    report.largest_stress = std::max(report.largest_stress, std::abs(o.value));
-    if (std::abs(r) >= report.max) {
-      report.max = std::abs(r);
-      report.where = observations.strains[i];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const StressPoint& p = points[i];
+    const TableStress at = stress(p.e1, p.e2);
+    for (const auto& [ours, theirs] : {std::pair(at.first, p.s1), {at.second, p.s2}}) {
+      if (std::isnan(theirs) || p.weight == 0) continue;
+      const double miss = std::abs(ours - theirs);
+      if (i >= reported) {
+        report.max_from_fill = std::max(report.max_from_fill, miss);
+        continue;
+      }
+      sum += p.weight * miss * miss;
+      weights += p.weight;
+      report.largest_stress = std::max(report.largest_stress, std::abs(theirs));
+      if (miss >= report.max) {
+        report.max = miss;
+        report.where = Vec2(p.e1, p.e2);
+      }
     }
   }
   report.rms = std::sqrt(sum / weights);
-  report.uncovered = residuals.uncovered;
 }
 
 // The potential whose derivatives follow the points best, with W = 0 and no stress at zero strain.
-nurbs::SurfaceFit fit_potential(const nurbs::Knots& first, const nurbs::Knots& second, const Observations& observations,
-                                bool symmetric, double smoothing) {
-  std::vector<nurbs::SurfaceObservation> all = observations.list;
+nurbs::SurfaceFit fit_potential(const nurbs::Knots& first, const nurbs::Knots& second,
+                                std::vector<nurbs::SurfaceObservation> all, bool symmetric, double smoothing) {
   const double sum = sum_of_weights(all);
   const double size = first.last() - first.first();
   all.push_back({0, 0, 0, 0, 0, sum / (size * size)}); // the constant, seen by nothing else
@@ -357,59 +357,164 @@ double smallest_span(const std::vector<double>& breaks) {
 // The knee whose potential follows points best.
 std::optional<double> best_knee(std::span<const StressPoint> points, StrainRange range, bool symmetric,
                                 double smoothing, const NurbsOptions& options) {
-  const Observations observations = gradients(points, points.size());
+  const std::vector<nurbs::SurfaceObservation> observations = gradients(points);
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::optional<double>& knee : knees(range)) {
     const auto knots = [&](int points_of_net) {
       return nurbs::from_breaks(options.degree + 1, strain_breaks(range, points_of_net - options.degree, knee));
     };
-    FitReport report;
-    report_residuals(
-        fit_potential(knots(options.net[0]), knots(options.net[1]), observations, symmetric, smoothing).residuals,
-        observations, report);
-    if (report.rms < 0.98 * least) {
-      least = report.rms;
+    const double rms =
+        fit_potential(knots(options.net[0]), knots(options.net[1]), observations, symmetric, smoothing).residuals.rms;
+    if (rms < 0.98 * least) {
+      least = rms;
       best = knee;
     }
   }
   return best;
 }
 
+// What a table's report says of its points and of its stress at these strains.
+void report(const std::shared_ptr<const PdTable>& table, std::span<const StressPoint> points, std::size_t reported,
+            std::span<const Vec2> places, FitReport& report) {
+  const auto stress = [law = PdNurbs{table, true, 0.5}](double e1, double e2) {
+    Response response;
+    law.evaluate(Vec3(e1, e2, 0), nullptr, nullptr, 0, response);
+    return along_axes(response);
+  };
+  report_misfit(stress, points, reported, report);
+  judge(stress, table->domain, places, report);
+}
+
+// A table of surfaces over the strains through the first `reported` of the points and
+// those that fill.
 PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
              double smoothing, const NurbsOptions& options) {
   const std::vector<double> ends = strain_breaks(range, options.net[0] - options.degree, knee);
   const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
   auto table = std::make_shared<PdTable>();
   PdFit fit;
-  Observations observations = gradients(points, reported);
+  std::vector<nurbs::SurfaceObservation> observations = gradients(points);
   nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, smoothing);
+  fit.report.uncovered = potential.residuals.uncovered;
   table->potential = std::move(potential.surface);
   table->domain = domain_of(points, range, true);
   // rounding of the difference against kinks of the second derivatives within it
   table->near = 1e-4 * smallest_span(ends);
-  if (options.potential) {
-    report_residuals(potential.residuals, observations, fit.report);
-    judge([&](double e1, double e2) { return derivatives(table->potential, e1, e2); }, table->domain, ends, ends,
-          fit.report);
-  } else {
-    for (nurbs::SurfaceObservation& o : observations.list) { // S2(a, b) = S1(b, a)
+  if (!options.potential) {
+    for (nurbs::SurfaceObservation& o : observations) { // S2(a, b) = S1(b, a)
       if (o.order_v == 1) std::swap(o.u, o.v);
       o.order_u = o.order_v = 0;
     }
     const nurbs::Knots of_stress = nurbs::from_breaks(options.degree, ends);
-    nurbs::SurfaceFit stress = fit_stress(of_stress, of_stress, observations.list, smoothing);
+    nurbs::SurfaceFit stress = fit_stress(of_stress, of_stress, observations, smoothing);
+    fit.report.uncovered = stress.residuals.uncovered;
     table->stress = std::move(stress.surface);
-    report_residuals(stress.residuals, observations, fit.report);
-    judge(
-        [&](double e1, double e2) {
-          const nurbs::SurfaceJet<1> s1 = nurbs::evaluate(*table->stress, e1, e2);
-          const nurbs::SurfaceJet<1> s2 = nurbs::evaluate(*table->stress, e2, e1);
-          return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.v[0], s2.u[0]};
-        },
-        table->domain, ends, ends, fit.report);
   }
   fit.table = std::move(table);
+  const std::vector<double> places = places_in(ends);
+  report(fit.table, points, reported, pairs(places, places), fit.report);
+  return fit;
+}
+
+// What of a law's table is known without a fit, if the law yields; `beyond` is empty.
+std::optional<YieldTable> until_yield(const Law& law) {
+  const auto of = [](const auto& m) -> std::optional<YieldTable> {
+    using M = std::decay_t<decltype(m)>;
+    if constexpr (std::is_same_v<M, J2> || std::is_same_v<M, Logarithmic>) {
+      const double yield = m.flow.onset(0);
+      if (yield > 0 && std::isfinite(yield)) return YieldTable{m.elasticity, yield, std::is_same_v<M, Logarithmic>, {}};
+    }
+    return std::nullopt;
+  };
+  return std::visit(
+      [&]<class M>(const M& m) {
+        if constexpr (requires { m.law; }) {
+          return of(m.law);
+        } else {
+          return of(m);
+        }
+      },
+      law);
+}
+
+// Coordinates of a YieldTable.
+Vec2 around_yield(const YieldTable& table, double e1, double e2) {
+  const double a = table.logarithmic ? logarithmic(e1) : e1;
+  const double b = table.logarithmic ? logarithmic(e2) : e2;
+  const double x = table.of_sum() * (a + b);
+  const double r = std::hypot(x, table.of_difference() * (a - b));
+  return {r, x / r};
+}
+
+Vec2 strains_at(const YieldTable& table, double r, double v) {
+  const double half_sum = 0.5 * r * v / table.of_sum();
+  const double half_difference = 0.5 * r * std::sqrt(1 - v * v) / table.of_difference();
+  const Vec2 e(half_sum + half_difference, half_sum - half_difference);
+  return table.logarithmic ? Vec2(0.5 * std::expm1(2 * e[0]), 0.5 * std::expm1(2 * e[1])) : e;
+}
+
+// The largest r of a range of strains.
+double reach(const YieldTable& table, StrainRange range) {
+  return std::max({around_yield(table, range.max, range.max)[0], around_yield(table, range.max, range.min)[0],
+                   around_yield(table, range.min, range.min)[0]});
+}
+
+// The table of a law that yields in this range: over r with spans that grow with it.
+PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, const NurbsOptions& options, double time) {
+  const int spans = options.net[0] - options.degree;
+  std::vector<double> in_r;
+  std::vector<double> in_v;
+  for (int i = 0; i <= spans; ++i) {
+    in_r.push_back(std::pow(reach(yield, range), static_cast<double>(i) / spans));
+    in_v.push_back(-1 + 2.0 * i / spans);
+  }
+  std::vector<Vec2> strains;
+  constexpr double parts[] = {1.0 / 6, 0.5, 5.0 / 6}; // not at v = -1 and 1, where a direction is lost
+  for (int i = 0; i < 3 * spans; ++i) {
+    for (int j = 0; j < 3 * spans; ++j) {
+      const auto in = [&](const std::vector<double>& ends, int place) {
+        const auto span = static_cast<std::size_t>(place / 3);
+        return ends[span] + parts[place % 3] * (ends[span + 1] - ends[span]);
+      };
+      const Vec2 e = strains_at(yield, in(in_r, i), in(in_v, j));
+      if (e.minCoeff() > -0.5) strains.push_back(e);
+    }
+  }
+  const std::vector<StressPoint> points = sample(law, strains, time);
+  std::vector<nurbs::SurfaceObservation> observations;
+  for (const StressPoint& p : points) {
+    const Vec2 at = around_yield(yield, p.e1, p.e2);
+    const double r = at[0];
+    const double v = at[1];
+    const double s = std::sqrt(1 - v * v);
+    const double t1 = yield.logarithmic ? p.s1 * (1 + 2 * p.e1) : p.s1;
+    const double t2 = yield.logarithmic ? p.s2 * (1 + 2 * p.e2) : p.s2;
+    const double by_x = 0.5 * (t1 + t2) / yield.of_sum();
+    const double by_y = 0.5 * (t1 - t2) / yield.of_difference();
+    observations.push_back({r, v, 1, 0, v * by_x + s * by_y - 2 * yield.on_curve(v), p.weight});
+    observations.push_back(
+        {r, v, 0, 1, r * (by_x - v / s * by_y) - (2 * r - 1) * yield.slope_on_curve(v), p.weight / (r * r)});
+  }
+  observations.push_back({1, 0, 0, 0, 0, 1}); // the constant, seen by nothing else
+  nurbs::FitSettings settings{options.smoothing.value_or(smoothing_of_law), 3, true, false, 2};
+  nurbs::SurfaceFit beyond = nurbs::fit(nurbs::from_breaks(options.degree + 1, in_r),
+                                        nurbs::from_breaks(options.degree + 1, in_v), observations, settings);
+  yield.beyond = std::move(beyond.surface);
+  auto table = std::make_shared<PdTable>();
+  table->yield = std::move(yield);
+  table->domain.range = range;
+  PdFit fit{std::move(table), {}};
+  fit.report.uncovered = beyond.residuals.uncovered;
+  std::vector<StressPoint> held;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(held),
+               [&](const StressPoint& p) { return fit.table->domain.holds(p.e1, p.e2); });
+  // under pressure the stresses of small-strain plasticity fall themselves
+  std::erase_if(strains, [&](const Vec2& e) {
+    Response response;
+    return !ask(law, Vec3(e[0], e[1], 0), time, response) || least_slope(along_axes(response), e) < 0;
+  });
+  report(fit.table, held, held.size(), strains, fit.report);
   return fit;
 }
 
@@ -419,43 +524,38 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
   LeFit fit;
   const std::vector<double> ends1 = strain_breaks(range, options.net[0] - options.degree, knee);
   const std::vector<double> ends2 = strain_breaks(range, options.net[1] - options.degree, knee);
-  Observations observations = gradients(points, points.size());
+  const std::vector<nurbs::SurfaceObservation> observations = gradients(points);
   nurbs::SurfaceFit potential =
       fit_potential(nurbs::from_breaks(options.degree + 1, ends1), nurbs::from_breaks(options.degree + 1, ends2),
                     observations, false, smoothing);
+  fit.report.uncovered = potential.residuals.uncovered;
   table->potential = std::move(potential.surface);
   table->domain = domain_of(points, range, false);
-  if (options.potential) {
-    report_residuals(potential.residuals, observations, fit.report);
-    judge([&](double e1, double e2) { return derivatives(table->potential, e1, e2); }, table->domain, ends1, ends2,
-          fit.report);
-  } else {
-    const nurbs::Knots knots1 = nurbs::from_breaks(options.degree, ends1);
-    const nurbs::Knots knots2 = nurbs::from_breaks(options.degree, ends2);
+  if (!options.potential) {
     std::vector<nurbs::SurfaceObservation> first;
     std::vector<nurbs::SurfaceObservation> second;
-    for (const nurbs::SurfaceObservation& o : observations.list) {
+    for (const nurbs::SurfaceObservation& o : observations) {
       (o.order_u == 1 ? first : second).push_back({o.u, o.v, 0, 0, o.value, o.weight});
     }
+    const nurbs::Knots knots1 = nurbs::from_breaks(options.degree, ends1);
+    const nurbs::Knots knots2 = nurbs::from_breaks(options.degree, ends2);
     nurbs::SurfaceFit s11 = fit_stress(knots1, knots2, std::move(first), smoothing);
     nurbs::SurfaceFit s22 = fit_stress(knots1, knots2, std::move(second), smoothing);
-    nurbs::Residuals residuals{0, 0, 0, {}, std::max(s11.residuals.uncovered, s22.residuals.uncovered)};
-    std::size_t of_first = 0;
-    std::size_t of_second = 0;
-    for (const nurbs::SurfaceObservation& o : observations.list) {
-      residuals.each.push_back(o.order_u == 1 ? s11.residuals.each[of_first++] : s22.residuals.each[of_second++]);
-    }
+    fit.report.uncovered = std::max(s11.residuals.uncovered, s22.residuals.uncovered);
     table->first = std::move(s11.surface);
     table->second = std::move(s22.surface);
-    report_residuals(residuals, observations, fit.report);
-    judge(
-        [&](double e1, double e2) {
-          const nurbs::SurfaceJet<1> s1 = nurbs::evaluate(*table->first, e1, e2);
-          const nurbs::SurfaceJet<1> s2 = nurbs::evaluate(*table->second, e1, e2);
-          return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.u[0], s2.v[0]};
-        },
-        table->domain, ends1, ends2, fit.report);
   }
+  const auto stress = [&](double e1, double e2) {
+    if (!table->first) {
+      const nurbs::SurfaceJet<1> w = nurbs::evaluate(table->potential, e1, e2);
+      return TableStress{w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
+    }
+    const nurbs::SurfaceJet<1> s1 = nurbs::evaluate(*table->first, e1, e2);
+    const nurbs::SurfaceJet<1> s2 = nurbs::evaluate(*table->second, e1, e2);
+    return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.u[0], s2.v[0]};
+  };
+  report_misfit(stress, points, points.size(), fit.report);
+  judge(stress, table->domain, pairs(places_in(ends1), places_in(ends2)), fit.report);
 
   double largest = 0;
   for (const ShearPoint& point : shear) {
@@ -533,15 +633,12 @@ std::vector<double> strain_breaks(StrainRange range, int spans, std::optional<do
   return ends;
 }
 
-std::vector<StressPoint> sample(const Law& law, std::span<const double> first, std::span<const double> second,
-                                double time) {
+std::vector<StressPoint> sample(const Law& law, std::span<const Vec2> strains, double time) {
   std::vector<StressPoint> points;
   Response response;
-  for (const double e1 : first) {
-    for (const double e2 : second) {
-      if (!ask(law, Vec3(e1, e2, 0), time, response)) continue;
-      points.push_back({e1, e2, response.stress[0], response.stress[1], 1});
-    }
+  for (const Vec2& e : strains) {
+    if (!ask(law, Vec3(e[0], e[1], 0), time, response)) continue;
+    points.push_back({e[0], e[1], response.stress[0], response.stress[1], 1});
   }
   if (points.empty()) throw std::invalid_argument("the law to fit has no state in the range of strains");
   std::vector<double> sizes;
@@ -578,11 +675,13 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
   check_pd(points, options);
   const StrainRange range = range_for_law(options);
   check_isotropic(law, range, time);
+  const std::optional<YieldTable> yield = options.potential ? until_yield(law) : std::nullopt;
+  if (yield && points.empty() && reach(*yield, range) > 1) return fit_beyond_yield(law, *yield, range, options, time);
   const int spans = options.net[0] - options.degree;
   const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
   const std::vector<double> places = places_in(strain_breaks(range, spans, knee));
   std::vector<StressPoint> all(points.begin(), points.end());
-  for (StressPoint& point : sample(law, places, places, time)) {
+  for (StressPoint& point : sample(law, pairs(places, places), time)) {
     if (point.e2 > point.e1) continue; // its mirror image is there
     if (point.e2 < point.e1) point.weight *= 2;
     if (!points.empty()) point.weight *= fill;
@@ -608,8 +707,10 @@ LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {
   const int spans = std::max(options.net[0], options.net[1]) - options.degree;
   const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
   const std::vector<StressPoint> points =
-      sample(law, places_in(strain_breaks(range, options.net[0] - options.degree, knee)),
-             places_in(strain_breaks(range, options.net[1] - options.degree, knee)), time);
+      sample(law,
+             pairs(places_in(strain_breaks(range, options.net[0] - options.degree, knee)),
+                   places_in(strain_breaks(range, options.net[1] - options.degree, knee))),
+             time);
   std::vector<ShearPoint> shear;
   const double largest = range.max - range.min; // 2 E12 of the principal strains max and min
   const int count = 6 * (options.net[0] - options.degree);

@@ -67,12 +67,11 @@ struct LeFit {
   FitReport shear_report; // of S12, where[0] is 2 E12
 };
 
-// Stresses of a law at all pairs of the given strains, each reached in one step of `time` (s; 0: none passes) from the
-// unloaded state: of plasticity this is the deformation (Hencky) law of monotonic loading, which has a potential. With
+// Stresses of a law at these strains (E1, E2), each reached in one step of `time` (s; 0: none passes) from the unloaded
+// state: of plasticity this is the deformation (Hencky) law of monotonic loading, which has a potential. With
 // equal weights, but w = (s / (s + |S|))^2 for the median s of the stresses |S|: where a law stiffens without bound its
 // relative error counts. States that the law does not have are left out, its tension field too.
-std::vector<StressPoint> sample(const Law& law, std::span<const double> first, std::span<const double> second,
-                                double time = 0);
+std::vector<StressPoint> sample(const Law& law, std::span<const base::Vec2> strains, double time = 0);
 
 // Table through points; S1(a, b) = S2(b, a) is built in: a point stands for its mirror image. No stress without strain
 // is built in, too. The data end at their convex hull, widened by a square about zero of a twentieth of the largest

@@ -8,6 +8,7 @@
 
 #include "geometry/nurbs/surface.h"
 #include "solver/material/concept.h"
+#include "solver/material/yield_table.h"
 
 namespace pneuma::solver::material {
 
@@ -38,12 +39,14 @@ struct TableDomain {
   }
 };
 
-// Table of an isotropic law over its principal strains. Built once, by `fit_pd_nurbs`; any number of laws share it.
+// Table of an isotropic law over its principal strains: a potential that is the sum of the parts it has. Built once, by
+// `fit_pd_nurbs`; any number of laws share it.
 struct PdTable {
-  geometry::nurbs::Surface<1> potential;             // W(E1, E2) = W(E2, E1), J/m3
-  std::optional<geometry::nurbs::Surface<1>> stress; // S1(E1, E2) = S2(E2, E1), Pa, where fitted apart
-  TableDomain domain;                                // of principal strains
-  double near = 0; // (S1 - S2)/(E1 - E2) of strains closer than this is a mean of derivatives
+  std::optional<YieldTable> yield;                      // of a law that yields
+  std::optional<geometry::nurbs::Surface<1>> potential; // W(E1, E2) = W(E2, E1), J/m3
+  std::optional<geometry::nurbs::Surface<1>> stress;    // S1(E1, E2) = S2(E2, E1), Pa, where fitted apart
+  TableDomain domain;                                   // of principal strains
+  double near = 0; // (S1 - S2)/(E1 - E2) of strains closer than this is a mean of the surfaces' derivatives
 };
 
 // Table of an orthotropic law over the strains along its axes. Built once, by `fit_le_nurbs`.

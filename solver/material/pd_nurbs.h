@@ -31,19 +31,11 @@ struct PdNurbs {
     const PrincipalStrain e = principal_strain(strain);
     if (!(e.second > -0.5) || !std::isfinite(e.first)) return Status::failed;
     if (!continued && !table->domain.holds(e.first, e.second)) return Status::outside_data;
-    PrincipalFunction f = principal_stress(e.first, e.second, response.energy);
+    PrincipalFunction f;
+    response.energy = 0;
+    if (table->yield) f = table->yield->stress(e, response.energy);
+    if (table->potential) add_surfaces(e, 0.5 * (strain[0] + strain[1]), f, response.energy);
     response.potential = response.energy;
-    if (e.difference > table->near) {
-      f.quotient = (f.s1 - f.s2) / e.difference;
-    } else {
-      // the mean over the difference of a derivative that is even in it: exact for parabolas
-      double unused = 0;
-      const double mean = 0.5 * (strain[0] + strain[1]);
-      f.quotient = (2 * turning(principal_stress(mean, mean, unused)) + turning(f)) / 3;
-      const double mean_stress = 0.5 * (f.s1 + f.s2);
-      f.s1 = mean_stress + 0.5 * f.quotient * e.difference;
-      f.s2 = mean_stress - 0.5 * f.quotient * e.difference;
-    }
     in_frame(e, f, response.stress, response.tangent);
     return Status::ok;
   }
@@ -55,12 +47,35 @@ struct PdNurbs {
   Vec3 stress_free_strain(const double*) const noexcept { return Vec3::Zero(); }
 
 private:
+  void add_surfaces(const PrincipalStrain& e, double mean, PrincipalFunction& sum, double& energy) const noexcept {
+    double w = 0;
+    PrincipalFunction f = of_surfaces(e.first, e.second, w);
+    if (e.difference > table->near) {
+      f.quotient = (f.s1 - f.s2) / e.difference;
+    } else {
+      // the mean over the difference of a derivative that is even in it: exact for parabolas
+      double unused = 0;
+      f.quotient = (2 * turning(of_surfaces(mean, mean, unused)) + turning(f)) / 3;
+      const double mean_stress = 0.5 * (f.s1 + f.s2);
+      f.s1 = mean_stress + 0.5 * f.quotient * e.difference;
+      f.s2 = mean_stress - 0.5 * f.quotient * e.difference;
+    }
+    sum.s1 += f.s1;
+    sum.s2 += f.s2;
+    sum.d11 += f.d11;
+    sum.d12 += f.d12;
+    sum.d21 += f.d21;
+    sum.d22 += f.d22;
+    sum.quotient += f.quotient;
+    energy += w;
+  }
+
   // d (s1 - s2) / d (E1 - E2)
   static double turning(const PrincipalFunction& f) noexcept { return 0.5 * (f.d11 - f.d12 - f.d21 + f.d22); }
 
   // Without the quotient.
-  PrincipalFunction principal_stress(double e1, double e2, double& energy) const noexcept {
-    const geometry::nurbs::SurfaceJet<1> w = geometry::nurbs::evaluate(table->potential, e1, e2);
+  PrincipalFunction of_surfaces(double e1, double e2, double& energy) const noexcept {
+    const geometry::nurbs::SurfaceJet<1> w = geometry::nurbs::evaluate(*table->potential, e1, e2);
     energy = w.value[0];
     if (!table->stress) return {w.u[0], w.v[0], w.uu[0], w.uv[0], w.uv[0], w.vv[0]};
     const geometry::nurbs::SurfaceJet<1> first = geometry::nurbs::evaluate(*table->stress, e1, e2);

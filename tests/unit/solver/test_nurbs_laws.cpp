@@ -97,7 +97,7 @@ TEST(PdNurbs, EqualStrainsZeroStrainAndKnotsAreNothingSpecial) {
   // kinks of the second derivatives (degree 2) and of the third (degree 3) lie on knots: differences with a short step
   const PdNurbs quadratic{fit_pd_nurbs(Law(neo_hooke), net(25, 2)).table};
   for (const auto& [law, bound] : {std::pair<const PdNurbs&, double>(table_of_rubber, 1e-8), {quadratic, 1e-6}}) {
-    const std::vector<double> knots = geometry::nurbs::breaks(law.table->potential.u);
+    const std::vector<double> knots = geometry::nurbs::breaks(law.table->potential->u);
     for (const double strain : {0.0, 0.013, knots[4], 0.8}) {
       EXPECT_LT(tangent_error(law, Vec3(strain, strain, 0), 1e-6), 100 * bound) << strain;
       const Response equal = answer(law, Vec3(strain, strain, 0));

@@ -138,50 +138,56 @@ TEST(PdNurbs, FollowsMooneyRivlinLikeTables43And44) {
   }
 }
 
+// Least and largest strain of all points, and a tenth more for what Newton passes through.
+material::StrainRange range_of(const assembly::System& system, const assembly::Configuration& at) {
+  material::StrainRange range;
+  for (const element::PointState& p :
+       element::point_states(system.foils()[0].membrane, at.positions, system.history(0))) {
+    const material::PrincipalStrain e = material::principal_strain(p.strain);
+    range.min = std::min(range.min, 1.1 * e.second);
+    range.max = std::max(range.max, 1.1 * e.first);
+  }
+  return range;
+}
+
 // The strip at one displacement, by the net, by the deformation law that the net is a table of (J2 in a single step
-// from the virgin state) and by flow theory in a hundred steps.
+// from the virgin state) and by flow theory in a hundred steps. The thesis does not name its displacement: its limits
+// hold at the first yield of the net section, where all of it flows, and at the end of B1.
 TEST(PdNurbs, FollowsTheDeformationLawOfPlasticityLikeTable46) {
   const material::J2 law{strip_elasticity, strip_flow()};
   const char* const mesh = "480 Q4, 531 nodes";
-  struct Case {
-    double displacement;         // m
-    material::StrainRange range; // of the exact solution, and a tenth more
-    double nodal, peak;          // allowed errors of displacements and of the largest stress, %
-    double flow;                 // %
-    const char* why;
-  };
-  for (const Case& c : {Case{0.04e-3, {-0.0043, 0.012}, 0.032, 0.040, 1, "the thesis' own"},
-                        Case{0.1e-3,
-                             {-0.031, 0.072},
-                             0.5,
-                             0.4,
-                             10,
-                             "all flows: with K = 0.2 GPa a stress error of 1 MPa moves strains by 0.5 %"}}) {
-    const PulledStrip exact(perforated_strip, law, c.displacement, 1);
-    const PulledStrip flow(perforated_strip, law, c.displacement, 100);
+  // 70 spans of degree 2 over r = 1 to 50: stress to 1e-5 (test_nurbs_laws). Where it flows K = 0.2 GPa makes of that
+  // strains of 1e-5 x 0.3 GPa / K = 1.5e-5, 0.02 % of 7 % and more.
+  const char* const why = "the thesis' own, pointwise; the table's 1e-5 of stress are 0.02 % of the strain by K";
+  constexpr double of_displacement = 0.032; // %, table 4.6
+  constexpr double of_stress = 0.040;       // %
+  for (const double displacement : {0.04e-3, 0.1e-3, 0.2e-3}) {
+    const PulledStrip exact(perforated_strip, law, displacement, 1);
+    const PulledStrip flow(perforated_strip, law, displacement, 100);
     ASSERT_TRUE(exact.reached() && flow.reached());
     ASSERT_EQ(exact.steps, 1); // else it is not the deformation law
-    const PulledStrip net(perforated_strip, material::PdNurbs{fit(law, 70, 2, c.range).table, false, 0.5},
-                          c.displacement, 1);
+    const material::PdFit table = fit(law, 70, 2, range_of(exact.system, exact.at));
+    EXPECT_TRUE(table.report.monotone);
+    const PulledStrip net(perforated_strip, material::PdNurbs{table.table, false, 0.5}, displacement, 1);
     ASSERT_TRUE(net.reached()) << net.path.reason;
     const Fields a(net.system, net.at), b(exact.system, exact.at), f(flow.system, flow.at);
     const std::array<double, 8> errors = differences(a, b);
-    const std::string at = fmt::format("at {:.2f} mm", c.displacement / 1e-3);
+    const std::string at = fmt::format("at {:.2f} mm", displacement / 1e-3);
     expect({"B7", "largest error of displacement y " + at + ", net against the exact deformation law, %", "0.032",
-            "J2 in one step", 0, errors[1], c.nodal, c.why, mesh, net.iterations(), "errors in %: " + list(errors)});
-    expect({"B7", "error of the largest stress y " + at + ", net against the exact deformation law, %", "0.040",
-            "J2 in one step", 0, percent * std::abs(largest(a.values[3]) / largest(b.values[3]) - 1), c.peak, c.why,
-            mesh, net.iterations(), "the thesis compares the largest values of its pictures"});
+            "J2 in one step", 0, errors[1], of_displacement, why, mesh, net.iterations(),
+            "errors in %: " + list(errors)});
+    expect({"B7", "largest error of stress y " + at + ", net against the exact deformation law, %", "0.040",
+            "J2 in one step", 0, errors[3], of_stress, why, mesh, net.iterations()});
     expect({"B7", "force " + at + ", net against the exact deformation law, kN", "", "J2 in one step",
-            exact.points.back().force / 1e3, net.points.back().force / 1e3, 1e-4,
-            "a mean over the net section of errors of both signs", mesh, net.iterations()});
+            exact.points.back().force / 1e3, net.points.back().force / 1e3, 1e-5,
+            "a mean over the net section of the table's 1e-5", mesh, net.iterations()});
     const std::array<double, 8> theory = differences(b, f);
+    const char* const none = "none: two theories, no bound is known";
     expect({"B7", "largest difference of displacement y " + at + ", deformation law against flow theory, %", "",
-            "J2 in 100 steps", 0, theory[1], c.flow, "stresses turn beside the hole: no theory bounds it", mesh,
-            flow.iterations(), "differences in %: " + list(theory)});
+            "J2 in 100 steps", 0, theory[1], unbounded, none, mesh, flow.iterations(),
+            "differences in %: " + list(theory)});
     expect({"B7", "force " + at + ", deformation law against flow theory, kN", "", "J2 in 100 steps",
-            flow.points.back().force / 1e3, exact.points.back().force / 1e3, 2e-3,
-            "the limit load knows no path; what hardens does", mesh, flow.iterations()});
+            flow.points.back().force / 1e3, exact.points.back().force / 1e3, unbounded, none, mesh, flow.iterations()});
   }
 }
 
