@@ -20,6 +20,13 @@ namespace {
 
 constexpr double smoothing_of_points = 1e-7;
 constexpr double smoothing_of_law = 1e-10;
+// Of what points add to the table of a law that yields. They part from it at a corner of their own, along which a
+// surface must not swing, and what they say should go on beside them, not end.
+constexpr double smoothing_of_rest = 1e-5;
+
+// Weight of a law against points, where a surface is of both, and where it is of the rest.
+constexpr double fill_of_law = 1e-3;
+constexpr double fill_of_rest = 1e-6;
 
 double logarithmic(double strain) {
   return 0.5 * std::log1p(2 * strain);
@@ -245,21 +252,19 @@ TableStress along_axes(const Response& r) {
   return {r.stress[0], r.stress[1], r.tangent(0, 0), r.tangent(0, 1), r.tangent(1, 0), r.tangent(1, 1)};
 }
 
-// The least slope of a Kirchhoff stress by its own strain.
-double least_slope(const TableStress& at, const Vec2& e) {
-  return std::min(2 * at.first + (1 + 2 * e[0]) * at.d11, 2 * at.second + (1 + 2 * e[1]) * at.d22);
-}
-
-// Monotony and integrability, looked for at these strains.
+// Monotony of the Kirchhoff stress, or of S, and integrability, looked for at these strains.
 template <class F>
-void judge(const F& stress, const TableDomain& domain, std::span<const Vec2> places, FitReport& report) {
+void judge(const F& stress, bool of_kirchhoff, const TableDomain& domain, std::span<const Vec2> places,
+           FitReport& report) {
   double least = std::numeric_limits<double>::infinity();
   double stiffest = 0;
   double defect = 0;
   for (const Vec2& e : places) {
     if (!domain.holds(e[0], e[1])) continue;
     const TableStress at = stress(e[0], e[1]);
-    const double slope = least_slope(at, e);
+    const double slope = of_kirchhoff
+                             ? std::min(2 * at.first + (1 + 2 * e[0]) * at.d11, 2 * at.second + (1 + 2 * e[1]) * at.d22)
+                             : std::min(at.d11, at.d22);
     if (slope < least) {
       least = slope;
       report.not_monotone = e;
@@ -383,18 +388,32 @@ void report(const std::shared_ptr<const PdTable>& table, std::span<const StressP
     return along_axes(response);
   };
   report_misfit(stress, points, reported, report);
-  judge(stress, table->domain, places, report);
+  const bool is_of_small_strain = table->yield && !table->yield->logarithmic; // S is what rises in such a law
+  judge(stress, !is_of_small_strain, table->domain, places, report);
 }
 
-// A table of surfaces over the strains through the first `reported` of the points and
-// those that fill.
+// The points' stresses less those of a table.
+std::vector<StressPoint> less(std::span<const StressPoint> points, const YieldTable& table) {
+  std::vector<StressPoint> rest(points.begin(), points.end());
+  for (StressPoint& p : rest) {
+    double unused = 0;
+    const PrincipalFunction f = table.stress(principal_strain(Vec3(p.e1, p.e2, 0)), unused);
+    p.s1 -= p.e1 >= p.e2 ? f.s1 : f.s2;
+    p.s2 -= p.e1 >= p.e2 ? f.s2 : f.s1;
+  }
+  return rest;
+}
+
+// A table of surfaces over the strains through the first `reported` of the points and those that fill; with `yield`
+// through what that leaves of them.
 PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRange range, std::optional<double> knee,
-             double smoothing, const NurbsOptions& options) {
+             double smoothing, const NurbsOptions& options, const std::optional<YieldTable>& yield = {}) {
   const std::vector<double> ends = strain_breaks(range, options.net[0] - options.degree, knee);
   const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
   auto table = std::make_shared<PdTable>();
   PdFit fit;
-  std::vector<nurbs::SurfaceObservation> observations = gradients(points);
+  table->yield = yield;
+  std::vector<nurbs::SurfaceObservation> observations = yield ? gradients(less(points, *yield)) : gradients(points);
   nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, smoothing);
   fit.report.uncovered = potential.residuals.uncovered;
   table->potential = std::move(potential.surface);
@@ -509,11 +528,6 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
   std::vector<StressPoint> held;
   std::copy_if(points.begin(), points.end(), std::back_inserter(held),
                [&](const StressPoint& p) { return fit.table->domain.holds(p.e1, p.e2); });
-  // under pressure the stresses of small-strain plasticity fall themselves
-  std::erase_if(strains, [&](const Vec2& e) {
-    Response response;
-    return !ask(law, Vec3(e[0], e[1], 0), time, response) || least_slope(along_axes(response), e) < 0;
-  });
   report(fit.table, held, held.size(), strains, fit.report);
   return fit;
 }
@@ -555,7 +569,7 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
     return TableStress{s1.value[0], s2.value[0], s1.u[0], s1.v[0], s2.u[0], s2.v[0]};
   };
   report_misfit(stress, points, points.size(), fit.report);
-  judge(stress, table->domain, pairs(places_in(ends1), places_in(ends2)), fit.report);
+  judge(stress, true, table->domain, pairs(places_in(ends1), places_in(ends2)), fit.report);
 
   double largest = 0;
   for (const ShearPoint& point : shear) {
@@ -670,16 +684,23 @@ PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& opti
   return pd_fit(points, points.size(), range, knee, smoothing, options);
 }
 
-PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points,
-                   double fill) {
+PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points) {
   check_pd(points, options);
   const StrainRange range = range_for_law(options);
   check_isotropic(law, range, time);
-  const std::optional<YieldTable> yield = options.potential ? until_yield(law) : std::nullopt;
-  if (yield && points.empty() && reach(*yield, range) > 1) return fit_beyond_yield(law, *yield, range, options, time);
-  const int spans = options.net[0] - options.degree;
-  const std::optional<double> knee = options.knee ? options.knee : best_knee(law, range, spans, time);
-  const std::vector<double> places = places_in(strain_breaks(range, spans, knee));
+  std::optional<YieldTable> yield = options.potential ? until_yield(law) : std::nullopt;
+  std::optional<double> knee = options.knee;
+  if (yield && reach(*yield, range) > 1) {
+    PdFit fit = fit_beyond_yield(law, *yield, range, options, time);
+    if (points.empty()) return fit;
+    yield = fit.table->yield;
+  } else {
+    yield.reset();
+    if (!knee) knee = best_knee(law, range, options.net[0] - options.degree, time);
+  }
+  const double fill = yield ? fill_of_rest : fill_of_law;
+  const double smoothing = options.smoothing.value_or(yield ? smoothing_of_rest : smoothing_of_law);
+  const std::vector<double> places = places_in(strain_breaks(range, options.net[0] - options.degree, knee));
   std::vector<StressPoint> all(points.begin(), points.end());
   for (StressPoint& point : sample(law, pairs(places, places), time)) {
     if (point.e2 > point.e1) continue; // its mirror image is there
@@ -687,8 +708,7 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
     if (!points.empty()) point.weight *= fill;
     all.push_back(point);
   }
-  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee,
-                options.smoothing.value_or(smoothing_of_law), options);
+  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee, smoothing, options, yield);
 }
 
 LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear,

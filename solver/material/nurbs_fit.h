@@ -37,19 +37,20 @@ struct NurbsOptions {
   std::optional<double> knee;
   bool potential = true; // stresses from one potential
   // Of geometry::nurbs::FitSettings. Default: 1e-7 through points alone, which leave cells open; of a law, which leaves
-  // none, 1e-10.
+  // none, 1e-10; of what points add to a law that yields 1e-5.
   std::optional<double> smoothing;
 };
 
 // How a table follows what it was fitted to.
 struct FitReport {
-  double rms = 0;                   // of the stress, weighted, Pa
-  double max = 0;                   // largest difference of a stress of points that have a weight, Pa
-  base::Vec2 where = {0, 0};        // strains (E1, E2) of it
-  double largest_stress = 0;        // of the same points, Pa
-  double max_from_fill = 0;         // largest difference from the law that fills what points leave open, Pa
-  double uncovered = 0;             // part of the cells of the table that no point lies in
-  bool monotone = true;             // the Kirchhoff stress (1 + 2 E1) S1 rises with E1 in all of the data, so does 22
+  double rms = 0;            // of the stress, weighted, Pa
+  double max = 0;            // largest difference of a stress of points that have a weight, Pa
+  base::Vec2 where = {0, 0}; // strains (E1, E2) of it
+  double largest_stress = 0; // of the same points, Pa
+  double max_from_fill = 0;  // largest difference from the law that fills what points leave open, Pa
+  double uncovered = 0;      // part of the cells of the table that no point lies in
+  // The Kirchhoff stress (1 + 2 E1) S1 rises with E1 in all of the data, so does 22; of small-strain plasticity S.
+  bool monotone = true;
   base::Vec2 not_monotone = {0, 0}; // where it rises least
   // Largest |dS1/dE2 - dS2/dE1| over the largest entry of the tangent, in the data: what keeps stresses fitted apart
   // from having an energy. Zero of a potential.
@@ -79,10 +80,11 @@ std::vector<StressPoint> sample(const Law& law, std::span<const base::Vec2> stra
 // Throws std::invalid_argument where the points do not determine it (all of them with equal strains, say).
 PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options);
 
-// Table of an isotropic law in a range of strains, that of its material without tension field. Points, where given,
-// count by 1 / `fill` more than the law, which fills what they leave open; the report is then of the points alone.
+// Table of an isotropic law in a range of strains, that of its material without tension field. Of a law that yields it
+// is a YieldTable, unless the stresses are fitted apart. Points, where given, count more than the law, which fills what
+// they leave open; beside a YieldTable a surface follows what the points add to it. The report is then of them alone.
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time = 0,
-                   std::span<const StressPoint> points = {}, double fill = 1e-3);
+                   std::span<const StressPoint> points = {});
 
 // Tables through points along material axes.
 LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear, const NurbsOptions& options);

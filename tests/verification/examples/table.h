@@ -3,8 +3,8 @@
 // finds. Every row with a tolerance is an assertion too.
 #pragma once
 
+#include <array>
 #include <limits>
-#include <optional>
 #include <string>
 
 namespace pneuma::tests {
@@ -22,11 +22,16 @@ struct Row {
   double tolerance = 0; // of |ours / reference - 1|; where the reference is 0, of |ours|
   std::string why;      // this tolerance
   std::string mesh;
-  int iterations = 0; // of Newton, of the whole path
+  int iterations = 0; // of Newton, of the whole path; 0: none to tell
   std::string remark = {};
 
   double error() const;
 };
+
+// Order p of convergence of values on three meshes or in three numbers of steps n0 < n1 < n2:
+//   (v0 - v1) / (v1 - v2) = (n0^-p - n1^-p) / (n1^-p - n2^-p),
+// 0 where they do not converge, 12 at most.
+double observed_order(const std::array<double, 3>& n, const std::array<double, 3>& values);
 
 // Asserts the row, prints it and keeps it for the table. Where PNEUMA_TABLES names a folder, the program writes all of
 // its rows there at its end, as material_examples.csv and .md.

@@ -90,7 +90,10 @@ double exact_nominal(const Foil& foil, bool large, bool sides, double engineerin
 
 constexpr double until = 0.3;
 constexpr int parts = 30;
-constexpr double read_at[] = {0.02, 0.1, 0.3};
+constexpr double read_at[] = {0.05, 0.15, 0.25};
+// Forces are in equilibrium to 1e-9 of themselves over the sheet's 882 unknowns, the norm of 2: their sum along the
+// even stretch to sqrt(882) 1e-9.
+constexpr double balance = 3e-8;
 std::size_t part_of(double strain) {
   return static_cast<std::size_t>(std::lround(strain / until * parts)) - 1;
 }
@@ -108,8 +111,8 @@ TEST(FoilTests, UniaxialAndEquibiaxialAreTheClosedForms) {
                 fmt::format("nominal stress {} at {:.0f} %, {} strain, MPa", sides ? "1:1" : "uniaxial", 100 * strain,
                             is_large ? "large" : "small"),
                 sides ? "figure 6.12" : "figure 6.11", "closed form",
-                exact_nominal(foil, is_large, sides, strain) / MPa, pulled->nominal[part_of(strain)] / MPa, 1e-7,
-                "a return along a straight stress path is exact; forces to 1e-9", mesh,
+                exact_nominal(foil, is_large, sides, strain) / MPa, pulled->nominal[part_of(strain)] / MPa, balance,
+                "a return along a straight stress path is exact; sqrt(882) residuals of 1e-9", mesh,
                 pulled->newton.work().iterations,
                 is_large ? ""
                          : fmt::format("{:.3f} of large strain",
@@ -125,37 +128,48 @@ TEST(FoilTests, UniaxialAndEquibiaxialAreTheClosedForms) {
   }
 }
 
-TEST(FoilTests, BiaxialOneToTwoIsThatOfATestPiece) {
+TEST(FoilTests, UnequalForcesAreThoseOfATestPiece) {
   const Foil foil;
   const material::Law laws[] = {material::Logarithmic{foil.elasticity(), foil.flow()},
                                 material::J2{foil.elasticity(), foil.flow()}};
-  for (const material::Law& law : laws) {
-    const bool is_large = std::holds_alternative<material::Logarithmic>(law);
-    const PulledFoil pulled(law, 10, 20, until, parts);
-    ASSERT_TRUE(pulled.reached()) << pulled.path.reason;
+  // nominal stress of a piece pulled to 30 % in steps, by step
+  const auto piece_in = [](const material::Law& law, double ratio, int steps) {
     material::TestPiece piece(law);
     std::vector<double> nominal;
-    for (int i = 1; i <= 10 * parts; ++i) {
-      ASSERT_TRUE(piece.advance(material::biaxial(2, 1), until * i / (10 * parts)));
-      if (i % 10 == 0) nominal.push_back(piece.state().nominal_stress()[0]);
+    for (int i = 1; i <= steps; ++i) {
+      EXPECT_TRUE(piece.advance(material::biaxial(ratio, 1), until * i / steps));
+      nominal.push_back(piece.state().nominal_stress()[0]);
     }
-    for (const double strain : read_at) {
-      expect({"B9",
-              fmt::format("nominal stress 2:1 at {:.0f} %, {} strain, MPa", 100 * strain, is_large ? "large" : "small"),
-              "figure 6.13", "test piece, ten times the steps", nominal[part_of(strain)] / MPa,
-              pulled.nominal[part_of(strain)] / MPa, 1e-3,
-              "stresses turn as the stretches part: backward Euler, and ten times less of it", mesh,
-              pulled.newton.work().iterations});
+    return nominal;
+  };
+  for (const double ratio : {2.0, 3.0}) {
+    const std::string name = fmt::format("{:.0f}:1", ratio);
+    const char* const printed = ratio == 2 ? "figure 6.13" : "";
+    for (const material::Law& law : laws) {
+      const char* const strains = std::holds_alternative<material::Logarithmic>(law) ? "large strain" : "small strain";
+      const PulledFoil pulled(law, 20 / ratio, 20, until, parts);
+      ASSERT_TRUE(pulled.reached()) << pulled.path.reason;
+      const std::vector<double> piece = piece_in(law, ratio, parts);
+      for (const double strain : read_at) {
+        expect({"B9", fmt::format("nominal stress {} at {:.0f} %, {}, MPa", name, 100 * strain, strains), printed,
+                "test piece, the same steps", piece[part_of(strain)] / MPa, pulled.nominal[part_of(strain)] / MPa,
+                balance, "an even sheet is one piece in any number of elements; sqrt(882) residuals of 1e-9", mesh,
+                pulled.newton.work().iterations});
+      }
+      // stresses turn as the stretches part
+      expect({"B9", fmt::format("order of the stress at 30 % in the step, {}, {}", name, strains), "",
+              "first: backward Euler", 1,
+              observed_order({parts, 2 * parts, 4 * parts}, {piece.back(), piece_in(law, ratio, 2 * parts).back(),
+                                                             piece_in(law, ratio, 4 * parts).back()}),
+              0.125, "yield takes 3 of 30 steps: a next term of a tenth", "test piece"});
     }
   }
 }
 
 TEST(FoilTests, TableOfTestPointsFilledUpByALawFollowsThePoints) {
-  // What Galliot and Luchsinger measured is printed in figures alone. In its place: a foil 2 % stronger than the law
-  // that fills up what its 1:1 and 2:1 tests leave open, so that following the law would be an error of 2 %. Where
-  // points and law disagree more, or a finer net follows both, the stresses' ridge along the points makes an even
-  // state of the sheet unstable (net of 40: at 19 %).
-  const Foil model, measured{1.02};
+  // What Galliot and Luchsinger measured is printed in figures alone. In its place: a foil 3 % stronger than the law
+  // that fills up what its 1:1 and 2:1 tests leave open, so that following the law would be an error of 3 %.
+  const Foil model, measured{1.03};
   const material::Logarithmic filling{model.elasticity(), model.flow()};
   const material::Logarithmic truth{measured.elasticity(), measured.flow()};
   constexpr double top = 0.2;
@@ -179,28 +193,26 @@ TEST(FoilTests, TableOfTestPointsFilledUpByALawFollowsThePoints) {
     }
   }
   material::NurbsOptions options;
-  options.net = {20, 20};
+  options.net = {28, 28};
   options.range = {{-0.15, 0.4}};
   const material::PdFit fit = material::fit_pd_nurbs(filling, options, 0, points);
   EXPECT_TRUE(fit.report.monotone);
-  const std::string remark = fmt::format("a foil 2 % stronger than the filling law stands for the measured one; table "
+  const std::string remark = fmt::format("a foil 3 % stronger than the filling law stands for the measured one; table "
                                          "off its points by {:.2f} MPa at most",
                                          fit.report.max / MPa);
   for (const Programme& test : programmes) {
     const PulledFoil pulled(material::PdNurbs{fit.table, false, 0.5}, 20 * test.ratio, 20, top, readings);
     ASSERT_TRUE(pulled.reached()) << pulled.path.reason;
-    for (const int reading : {readings / 2, readings}) {
+    for (const int reading : {readings * 3 / 5, readings * 4 / 5, readings}) {
       const auto i = static_cast<std::size_t>(reading) - 1;
       const double strain = 100 * top * reading / readings;
-      expect({"B10", fmt::format("nominal stress {} at {:.0f} %, MPa", test.name, strain), "0.3 to 2 % off",
+      expect({"B10", fmt::format("nominal stress {} at {:.0f} %, MPa", test.name, strain), "0.32 to 1.99 % off",
               "the tested foil", test.nominal[i] / MPa, pulled.nominal[i] / MPa, 0.0032, "the least of table 6.2", mesh,
               pulled.newton.work().iterations, remark});
-      if (test.ratio == 1) continue;
-      // a foil that flows turns a stress error into one of strain by its hardening modulus
-      expect({"B10", fmt::format("error of the strain across, {} at {:.0f} %, %", test.name, strain), "1.57 % of it",
-              "the tested foil", 0, 100 * (pulled.across[i] - test.across[i]), 100 * fit.report.rms / (80 * MPa),
-              "the table's rms of stress over the hardening modulus", mesh, pulled.newton.work().iterations,
-              fmt::format("the strain is {:.3f} %: hardly any", 100 * test.across[i])});
+      if (test.ratio == 1) continue; // both strains are given
+      expect({"B10", fmt::format("strain across, {} at {:.0f} %, %", test.name, strain), "0.42 to 1.57 % off",
+              "the tested foil", 100 * test.across[i], 100 * pulled.across[i], 0.0157,
+              "the one of table 6.2 for direction 1 of 2:1", mesh, pulled.newton.work().iterations});
     }
   }
 }
