@@ -26,7 +26,7 @@ struct Switch {
 };
 
 inline bool asks_for_help(int argc, char** argv) {
-  return std::find(argv + 1, argv + argc, std::string_view("--help")) != argv + argc;
+  return std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--help" || word == "-h"; });
 }
 
 // Reads a command line into `options`: every switch with its values, every other word by `take`. Throws InputError
@@ -35,7 +35,7 @@ template <class Options, class Take>
 void read_command_line(std::span<const std::string> words, const std::vector<Switch<Options>>& switches,
                        const char* usage, Options& options, const Take& take) {
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!words[i].starts_with("--")) {
+    if (!words[i].starts_with("-")) {
       take(words[i]);
       continue;
     }

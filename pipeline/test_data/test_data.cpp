@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -35,6 +37,37 @@ constexpr std::array columns = {Column{"strain_1", "1", &Row::strain_1},
                                 Column{"temperature", "K", &Row::temperature},
                                 Column{"weight", "", &Row::weight}};
 
+// A strain and the stress that does work on it.
+struct Pair {
+  const char* strain_name;
+  const char* stress_name;
+  double Row::*strain;
+  double Row::*stress;
+};
+
+constexpr std::array pairs = {Pair{"strain_1", "stress_1", &Row::strain_1, &Row::stress_1},
+                              Pair{"strain_2", "stress_2", &Row::strain_2, &Row::stress_2},
+                              Pair{"shear_strain", "shear_stress", &Row::shear_strain, &Row::shear_stress}};
+
+// The pair of the larger stress that was measured.
+const Pair& larger(const Row& row) {
+  const Pair* best = pairs.data();
+  for (const Pair& pair : pairs) {
+    if (!(std::abs(row.*best->stress) >= std::abs(row.*pair.stress)) && !std::isnan(row.*pair.stress)) best = &pair;
+  }
+  return *best;
+}
+
+// Of the difference of stresses on that of strains, in what was measured.
+double work(const Row& from, const Row& to) {
+  double sum = 0;
+  for (const Pair& pair : pairs) {
+    const double one = (to.*pair.strain - from.*pair.strain) * (to.*pair.stress - from.*pair.stress);
+    if (!std::isnan(one)) sum += one;
+  }
+  return sum;
+}
+
 std::vector<std::string> known_names() {
   std::vector<std::string> names;
   for (const Column& column : columns) names.emplace_back(column.name);
@@ -47,18 +80,32 @@ struct Cell {
   int column = 1;
 };
 
-std::vector<Cell> cells_of(std::string_view line) {
+std::vector<Cell> cells_of(std::string_view line, char separator) {
   std::vector<Cell> cells;
   for (std::size_t begin = 0;;) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
     std::string_view part = line.substr(begin, end - begin);
     const std::size_t first = std::min(part.find_first_not_of(" \t"), part.size());
     part.remove_prefix(first);
     part = part.substr(0, part.find_last_not_of(" \t") + 1);
+    if (part.size() >= 2 && part.front() == '"' && part.back() == '"') part = part.substr(1, part.size() - 2);
     cells.push_back({std::string(part), static_cast<int>(begin + first) + 1});
     if (end == line.size()) return cells;
     begin = end + 1;
   }
+}
+
+// What stands between the columns of a header. Blanks may stand around each of them, a tab is one where nothing else
+// is.
+char separator_of(std::string_view header) {
+  for (const char separator : {';', ',', '\t'}) {
+    if (header.find(separator) != std::string_view::npos) return separator;
+  }
+  return ',';
+}
+
+const char* name_of(char separator) {
+  return separator == ';' ? "semicolons" : separator == ',' ? "commas" : "tabs";
 }
 
 struct Title {
@@ -74,6 +121,10 @@ public:
   std::vector<Row> read(std::string_view text, const std::vector<std::string>& needed) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3); // byte order mark
     std::vector<Row> rows;
+    if (text.find('\0') != std::string_view::npos) {
+      fail(1, "the file is no text in UTF-8 (a spreadsheet's own format, or UTF-16); export it as CSV in UTF-8");
+      return rows;
+    }
     bool has_header = false;
     for (; !text.empty(); ++line_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
@@ -89,7 +140,12 @@ public:
         rows.push_back(*row);
       }
     }
+    check_plausible(rows);
     const auto is_mine = [this](const Problem& problem) { return problem.mark.file == name_; };
+    const auto has_weight = [](const Row& row) { return row.weight > 0; };
+    if (!rows.empty() && std::none_of(rows.begin(), rows.end(), has_weight)) {
+      fail(1, "no row has a `weight` above 0");
+    }
     if (rows.empty() && std::none_of(problems_.begin(), problems_.end(), is_mine)) {
       fail(1, has_header ? "the file has a header and no rows"
                          : "the file is empty; test data begin with a header such as `strain_1 [%], stress_1 [MPa]`");
@@ -102,9 +158,22 @@ private:
     problems_.push_back({Mark{name_, line_, column}, std::move(message), true});
   }
 
+  void warn(int line, int column, std::string message) {
+    problems_.push_back({Mark{name_, line, column}, std::move(message), false});
+  }
+
   bool read_header(std::string_view line, const std::vector<std::string>& needed) {
     const std::size_t before = problems_.size();
-    for (const Cell& cell : cells_of(line)) read_title(cell);
+    separator_ = separator_of(line);
+    const std::vector<Cell> cells = cells_of(line, separator_);
+    if (cells.size() == 1 && !check_single(cells.front())) return false;
+    const auto is_number = [](const Cell& cell) { return schema::parse_number(cell.text).has_value(); };
+    if (std::all_of(cells.begin(), cells.end(), is_number)) {
+      fail(1, "the first line must name the columns with their units, as in `strain_1 [%], stress_1 [MPa]`");
+      return false;
+    }
+    for (const Cell& cell : cells) read_title(cell);
+    if (problems_.size() > before) return false; // a column that is missing may have an unknown name
     for (const std::string& name : needed) {
       const bool is_there = std::any_of(titles_.begin(), titles_.end(), [&](const Title& title) {
         return title.column != nullptr && title.column->name == name;
@@ -114,12 +183,28 @@ private:
     return problems_.size() == before;
   }
 
+  // A header of one title, or of several between which stands nothing that separates.
+  bool check_single(const Cell& cell) {
+    const std::size_t end = cell.text.find(']');
+    const std::size_t next = end == std::string::npos ? end : cell.text.find_first_not_of(" \t", end + 1);
+    if (next == std::string::npos) return true;
+    const bool is_blank = std::isalpha(static_cast<unsigned char>(cell.text[next])) != 0;
+    fail(cell.column + static_cast<int>(end) + 1,
+         fmt::format("{} between the columns; write commas, semicolons or tabs",
+                     is_blank ? "only blanks stand" : fmt::format("`{}` stands", cell.text[next])));
+    return false;
+  }
+
   void read_title(const Cell& cell) {
     const std::size_t bracket = std::min(cell.text.find('['), cell.text.size());
     const std::string name = cell.text.substr(0, cell.text.find_last_not_of(" \t", bracket - 1) + 1);
     const auto column = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
     Title title;
-    if (column == columns.end()) {
+    if (cell.text.empty()) {
+      fail(cell.column, "a column without a name; take its separator out of all lines");
+    } else if (name.find('(') != std::string::npos) {
+      fail(cell.column, fmt::format("`{}`: units stand in square brackets, as in `strain_1 [%]`", name));
+    } else if (column == columns.end()) {
       fail(cell.column, fmt::format("unknown column `{}`{}; known: {}", name, schema::suggestion(name, known_names()),
                                     schema::joined(known_names())));
     } else {
@@ -154,9 +239,20 @@ private:
 
   std::optional<Row> read_row(std::string_view line, const std::vector<Row>& before) {
     const std::size_t faults = problems_.size();
-    const std::vector<Cell> cells = cells_of(line);
+    const std::vector<Cell> cells = cells_of(line, separator_);
     if (cells.size() != titles_.size()) {
-      fail(1, fmt::format("{} cells stand under {} columns", cells.size(), titles_.size()));
+      const char separator = separator_of(line);
+      const bool is_decimal = separator == ',' && decimal_mark_ == ',';
+      std::string hint;
+      if (separator != separator_ && !is_decimal && cells_of(line, separator).size() == titles_.size()) {
+        hint = fmt::format(": the header separates by {}, this line by {}", name_of(separator_), name_of(separator));
+      } else if (cells.size() > titles_.size() && separator_ == ',') {
+        hint = ": where numbers have decimal commas, semicolons or tabs must separate the columns, in the header too";
+      } else if (cells.size() == 1 && titles_.size() > 1) {
+        hint = fmt::format(": {} must separate them, as in the header", name_of(separator_));
+      }
+      fail(1, fmt::format("{} cell{} under {} columns{}", cells.size(), cells.size() == 1 ? " stands" : "s stand",
+                          titles_.size(), hint));
       return std::nullopt;
     }
     Row row;
@@ -175,12 +271,31 @@ private:
                               "of their own",
                               name, name));
     }
-    const std::optional<double> number = schema::parse_number(cell.text);
+    std::string text = cell.text;
+    if (!read_decimal_comma(cell, text)) return;
+    const std::optional<double> number = schema::parse_number(text);
     if (!number) return fail(cell.column, fmt::format("`{}` must be a plain number, not `{}`", name, cell.text));
     row.*title.column->value =
         *title.column->unit == '\0'
             ? *number
-            : schema::parse_quantity(fmt::format("{} {}", cell.text, title.unit), title.column->unit).value;
+            : schema::parse_quantity(fmt::format("{} {}", text, title.unit), title.column->unit).value;
+  }
+
+  // Puts a point for the decimal comma of a number. Where a file has both, one of them may part thousands.
+  bool read_decimal_comma(const Cell& cell, std::string& text) {
+    const std::size_t comma = text.find(',');
+    const std::size_t point = text.find('.');
+    if (comma == std::string::npos && point == std::string::npos) return true;
+    const char mark = comma != std::string::npos ? ',' : '.';
+    if (decimal_mark_ == '\0') decimal_mark_ = mark;
+    if (mark != decimal_mark_ || (comma != std::string::npos && point != std::string::npos)) {
+      fail(cell.column, fmt::format("`{}`: decimal commas and points in one file; write one of them, and nothing "
+                                    "between thousands",
+                                    cell.text));
+      return false;
+    }
+    if (mark == ',') text[comma] = '.'; // a second one makes it no number
+    return true;
   }
 
   void check(const Row& row, const std::vector<Cell>& cells, const std::vector<Row>& before) {
@@ -191,6 +306,20 @@ private:
         fail(cells[i].column, fmt::format("`{}` must be above {}, where nothing is left of the length, not {}", name,
                                           smallest, cells[i].text));
       }
+      constexpr double most = 5; // 500 %
+      if (name.find("strain") != std::string::npos && titles_[i].unit == "1" &&
+          std::abs(row.*titles_[i].column->value) > most && told_.insert(name).second) {
+        warn(line_, cells[i].column,
+             fmt::format("`{0}` of {1} [-] is {2:.4g} %; is the unit `{0} [%]` meant?", name, cells[i].text,
+                         100 * row.*titles_[i].column->value));
+      }
+      constexpr double coldest = 150, hottest = 500; // K
+      if (name == "temperature" && !(row.temperature >= coldest && row.temperature <= hottest) &&
+          told_.insert(name).second) {
+        warn(line_, cells[i].column,
+             fmt::format("`temperature` of {} [{}] is {:.4g} K; is the unit right?", cells[i].text, titles_[i].unit,
+                         row.temperature));
+      }
       if (name == "weight" && row.weight < 0) {
         fail(cells[i].column, fmt::format("`weight` must be at least 0, not {}", cells[i].text));
       }
@@ -200,10 +329,88 @@ private:
     }
   }
 
+  void check_plausible(const std::vector<Row>& rows) {
+    if (rows.empty()) return;
+    check_modulus(rows);
+    for (const Pair& pair : pairs) check_rise(rows, pair);
+    if (std::isnan(rows.front().time)) check_repeated(rows);
+  }
+
+  // The secant where the stress first is a quarter of the largest one, past the slack of the grips.
+  void check_modulus(const std::vector<Row>& rows) {
+    constexpr double least = 1e6, most = 100e9; // Pa, of foils
+    double largest = 0;
+    for (const Row& row : rows) largest = std::max(largest, std::abs(row.*larger(row).stress));
+    for (const Row& row : rows) {
+      const Pair& pair = larger(row);
+      const double stress = std::abs(row.*pair.stress), strain = std::abs(row.*pair.strain);
+      if (!(stress > 0 && stress >= largest / 4 && strain > 0)) continue;
+      const double modulus = stress / strain;
+      if (modulus >= least && modulus <= most) return;
+      warn(row.line, 1,
+           fmt::format("{:.4g} MPa at a strain of {:.4g} % mean a modulus of {:.3g} MPa, where foils have 1 MPa to 100 "
+                       "GPa; are the units of `{}` and `{}` right?",
+                       stress / 1e6, 100 * strain, modulus / 1e6, pair.stress_name, pair.strain_name));
+      return;
+    }
+  }
+
+  // Less stress at more strain, past noise, where the piece gives work back (Drucker): grips that slip, a tear. Not the
+  // way from one path of a table of strains to the next.
+  void check_rise(const std::vector<Row>& rows, const Pair& pair) {
+    constexpr double noise_of_strain = 0.01, noise_of_stress = 0.02; // of the largest
+    double strain = 0, stress = 0;
+    for (const Row& row : rows) {
+      strain = std::max(strain, std::abs(row.*pair.strain));
+      stress = std::max(stress, std::abs(row.*pair.stress));
+    }
+    strain *= noise_of_strain;
+    stress *= noise_of_stress;
+    const Row* front = rows.data(); // of the largest strain since it fell last
+    const Row* peak = front;        // of the largest stress since then
+    for (const Row& row : rows) {
+      if (row.*pair.strain < front->*pair.strain - strain) {
+        front = peak = &row;
+        continue;
+      }
+      if (row.*pair.strain > front->*pair.strain) front = &row;
+      if (row.*pair.stress > peak->*pair.stress) peak = &row;
+      if (!(row.*pair.strain - peak->*pair.strain > strain && peak->*pair.stress - row.*pair.stress > stress)) continue;
+      if (work(*peak, row) >= 0) continue;
+      return warn(row.line, 1,
+                  fmt::format("`{}` falls from {:.4g} MPa (line {}) to {:.4g} MPa while `{}` rises from {:.4g} % to "
+                              "{:.4g} %: do the grips slip, or is the foil torn?",
+                              pair.stress_name, peak->*pair.stress / 1e6, peak->line, row.*pair.stress / 1e6,
+                              pair.strain_name, 100 * peak->*pair.strain, 100 * row.*pair.strain));
+    }
+  }
+
+  void check_repeated(const std::vector<Row>& rows) {
+    constexpr double noise = 0.02; // of the largest stress
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      bool same = true, other = false;
+      for (const Pair& pair : pairs) {
+        if (std::isnan(rows[i].*pair.strain)) continue;
+        double largest = 0;
+        for (const Row& row : rows) largest = std::max(largest, std::abs(row.*pair.stress));
+        same = same && rows[i].*pair.strain == rows[i - 1].*pair.strain;
+        other = other || std::abs(rows[i].*pair.stress - rows[i - 1].*pair.stress) > noise * largest;
+      }
+      if (!same || !other) continue;
+      return warn(rows[i].line, 1,
+                  fmt::format("the strains of line {} again, with other stresses; without a column `time` one of them "
+                              "is too many",
+                              rows[i - 1].line));
+    }
+  }
+
   std::string name_;
   Measure measure_;
   std::vector<Problem>& problems_;
   std::vector<Title> titles_;
+  std::set<std::string> told_; // columns
+  char separator_ = ',';
+  char decimal_mark_ = '\0'; // of the first number that has one
   int line_ = 1;
 };
 

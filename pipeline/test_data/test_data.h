@@ -31,7 +31,7 @@ struct Row {
 
 // Reads the text of a CSV file (README.md says what it holds); `name` stands for the file in the marks. `needed`:
 // columns without which it is of no use. Every fault is a problem at its line and column; rows that have one are left
-// out.
+// out. What is implausible (units, stress that falls, strains that come again) is a warning there, once for each kind.
 std::vector<Row> parse(const std::string& text, const std::string& name, Measure measure,
                        const std::vector<std::string>& needed, std::vector<schema::Problem>& problems);
 

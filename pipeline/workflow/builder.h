@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -82,7 +83,9 @@ private:
   void check_fits();
   // These materials and those that they are fitted to.
   std::set<std::string> with_fits(const std::vector<std::string>& names) const;
-  void read_points(const std::string& name);
+  // `of_site`: temperature there, K, where a site is known.
+  void read_points(const std::string& name, std::optional<double> of_site);
+  void check_test_temperatures(const Mark& data, const std::array<double, 2>& tests, std::optional<double> of_site);
   void check_temperature(const Material& material);
 
   // builder_stages.cpp

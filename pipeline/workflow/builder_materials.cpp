@@ -57,7 +57,7 @@ MaterialsResult Builder::build_materials(const std::vector<std::string>& names) 
   MaterialsResult result;
   result.names = material_names_;
   const std::vector<std::string>& asked = names.empty() ? material_names_ : names;
-  for (const std::string& name : with_fits(asked)) read_points(name);
+  for (const std::string& name : with_fits(asked)) read_points(name, std::nullopt);
   for (const std::string& name : material_names_) {
     const auto found = workflow_.materials.find(name);
     const bool is_asked = std::find(asked.begin(), asked.end(), name) != asked.end();
@@ -382,7 +382,7 @@ void Builder::finish_materials() {
   for (const FoilSettings& foil : workflow_.cushion.foils) of_foils.push_back(foil.material);
   const std::set<std::string> used = with_fits(of_foils);
   for (const std::string& name : used) {
-    read_points(name);
+    read_points(name, workflow_.site.temperature);
     if (const auto found = workflow_.materials.find(name); found != workflow_.materials.end()) {
       check_temperature(found->second);
     }
@@ -448,13 +448,14 @@ std::set<std::string> Builder::with_fits(const std::vector<std::string>& names) 
   return all;
 }
 
-void Builder::read_points(const std::string& name) {
+void Builder::read_points(const std::string& name, std::optional<double> of_site) {
   const auto value = tables_.find(name);
   if (value == tables_.end() || is_stage_file_) return;
   auto& law = std::get<TableLaw>(workflow_.materials.at(name).law);
   const auto measure = text_of(value->second, "measure") == "green_lagrange" ? test_data::Measure::green_lagrange
                                                                              : test_data::Measure::engineering;
   const std::string path = "materials." + name;
+  std::optional<std::array<double, 2>> temperatures; // of the tests, least and most
   const auto rows_of = [&](const char* key, const std::vector<std::string>& needed, const auto& take) {
     const Value* data = value->second[key];
     if (data == nullptr) return;
@@ -466,6 +467,9 @@ void Builder::read_points(const std::string& name) {
       for (const test_data::Row& row : test_data::parse(content, file.generic_string(), measure, needed, problems)) {
         take(test_data::converted(row, measure, test_data::Measure::green_lagrange),
              Mark{file.generic_string(), row.line, 1});
+        if (std::isnan(row.temperature)) continue;
+        const auto [least, most] = temperatures.value_or(std::array{row.temperature, row.temperature});
+        temperatures = {std::min(least, row.temperature), std::max(most, row.temperature)};
       }
     }
   };
@@ -481,6 +485,12 @@ void Builder::read_points(const std::string& name) {
     fail(value->second.mark, fmt::format("{} points are more than a table takes ({}); thin them out",
                                          law.points.size() + law.shear_points.size(), most_points));
   }
+  const Value* data = value->second["data"];
+  if (temperatures)
+    check_test_temperatures((data != nullptr ? data : value->second["shear_data"])->mark, *temperatures, of_site);
+  if (const MissingTests missing = missing_tests(law); !missing.message.empty()) {
+    problems.push_back({(data != nullptr ? data : value->second["points"])->mark, missing.message, missing.useless});
+  }
   const Value* range = value->second["range"];
   for (const TableLaw::Point& point : law.points) {
     const auto [low, high] = std::minmax(point.strain_1, point.strain_2);
@@ -488,6 +498,22 @@ void Builder::read_points(const std::string& name) {
     fail(range->mark, fmt::format("`range` [{}, {}] leaves out points with strains {:.4g} and {:.4g} (Green-Lagrange)",
                                   (*law.range)[0], (*law.range)[1], point.strain_1, point.strain_2));
     break;
+  }
+}
+
+void Builder::check_test_temperatures(const Mark& data, const std::array<double, 2>& tests,
+                                      std::optional<double> of_site) {
+  constexpr double steady = 5, near = 10; // K
+  constexpr double celsius = 273.15;
+  const auto [least, most] = tests;
+  if (most - least > steady) {
+    warn(data, fmt::format("the tests were taken at {:.4g} to {:.4g} degC; a table knows no temperature and takes them "
+                           "as one: give each temperature a table of its own",
+                           least - celsius, most - celsius));
+  } else if (of_site && (*of_site < least - near || *of_site > most + near)) {
+    warn(data, fmt::format("the tests were taken at {:.4g} degC and the site has {:.4g} degC; a table knows no "
+                           "temperature and keeps what it is fitted to",
+                           0.5 * (least + most) - celsius, *of_site - celsius));
   }
 }
 

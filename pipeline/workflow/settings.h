@@ -112,6 +112,18 @@ struct TableLaw {
 
 using MaterialLaw = std::variant<ElasticLaw, OrthotropicLaw, J2Law, OgdenLaw, MooneyRivlinLaw, TableLaw>;
 
+// How near the points of a table come to uniaxial stress along axis 1 and along axis 2: the least ratio of the smaller
+// to the larger stress of those that are loaded along it, by a quarter of the largest stress at least; infinite without
+// such a point. Of a table of principal stresses twice the same.
+std::array<double, 2> least_stress_ratios(const TableLaw& law);
+
+// What the points of a table leave open that no law fills, and what to do about it; empty: nothing.
+struct MissingTests {
+  std::string message;
+  bool useless = false; // a table of such points is none
+};
+MissingTests missing_tests(const TableLaw& law);
+
 // What the report compares stresses with: f_d = characteristic / (product of factors x factor of the temperature).
 struct Strength {
   double characteristic = 0;                      // Pa

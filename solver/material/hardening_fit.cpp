@@ -242,14 +242,20 @@ std::optional<HardeningFit> fit_hardening(std::span<const CurvePoint> points, in
   const Fit fit(points, softening);
   Polygon polygon;
   double rounding = 0; // cost of an exact fit
-  for (const CurvePoint& point : points) rounding += 1e-24 * point.weight * point.stress * point.stress;
+  double count = 0;
+  for (const CurvePoint& point : points) {
+    rounding += 1e-24 * point.weight * point.stress * point.stress;
+    count += point.weight > 0 ? 1 : 0;
+  }
+  // Schwarz (1978), Ann. Stat. 6: what a branch more must gain, n log(cost), to be more than noise; as three unknowns,
+  // for the place of a corner finds more noise to fit than an unknown of its own does
+  const double worth = std::pow(count, -3 / count);
   for (int i = 0; i < branches; ++i) {
     Polygon next = with_one_more(fit, polygon.corners, grid);
     if (!std::isfinite(next.cost)) break;
     exchange(fit, grid, next);
     fit.move_together(next);
-    constexpr double worth = 1e-6; // of the cost
-    if (!(next.cost < (1 - worth) * polygon.cost)) break;
+    if (!(next.cost < worth * polygon.cost)) break;
     polygon = std::move(next);
     if (polygon.cost <= rounding) break;
   }

@@ -20,7 +20,7 @@ struct CurvePoint {
 
 struct HardeningFit {
   double youngs_modulus = 0;             // Pa
-  std::vector<HardeningBranch> branches; // plastic moduli; fewer than asked for where more fit no better
+  std::vector<HardeningBranch> branches; // plastic moduli; fewer than asked for where more fit noise
   double cost = 0;                       // sum of weight x squared difference, Pa2
 
   double stress_at(double strain) const; // Pa

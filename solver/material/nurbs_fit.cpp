@@ -18,11 +18,26 @@ using base::Vec2;
 
 namespace {
 
-constexpr double smoothing_of_points = 1e-7;
 constexpr double smoothing_of_law = 1e-10;
+constexpr double smoothing_of_points = 1e-7;
 // Of what points add to the table of a law that yields. They part from it at a corner of their own, along which a
 // surface must not swing, and what they say should go on beside them, not end.
 constexpr double smoothing_of_rest = 1e-5;
+constexpr double most_smoothing = 1e-3;
+
+// The fit with the wanted smoothing or, where that is left open, with the least from `least` on, in powers of ten, that
+// lets the stress rise everywhere: points leave ridges beside the lines of their tests. Where none does, with the
+// least.
+template <class F>
+auto smooth(const std::optional<double>& wanted, double least, const F& fit) {
+  auto first = fit(wanted.value_or(least));
+  if (wanted || first.report.monotone) return first;
+  for (double smoothing = 10 * least; smoothing < 2 * most_smoothing; smoothing *= 10) {
+    auto found = fit(smoothing);
+    if (found.report.monotone) return found;
+  }
+  return first;
+}
 
 // Weight of a law against points, where a surface is of both, and where it is of the rest.
 constexpr double fill_of_law = 1e-3;
@@ -361,7 +376,8 @@ double smallest_span(const std::vector<double>& breaks) {
 
 // The knee whose potential follows points best.
 std::optional<double> best_knee(std::span<const StressPoint> points, StrainRange range, bool symmetric,
-                                double smoothing, const NurbsOptions& options) {
+                                const NurbsOptions& options) {
+  const double smoothing = options.smoothing.value_or(smoothing_of_points);
   const std::vector<nurbs::SurfaceObservation> observations = gradients(points);
   std::optional<double> best;
   double least = std::numeric_limits<double>::infinity();
@@ -412,6 +428,7 @@ PdFit pd_fit(std::span<const StressPoint> points, std::size_t reported, StrainRa
   const nurbs::Knots of_potential = nurbs::from_breaks(options.degree + 1, ends);
   auto table = std::make_shared<PdTable>();
   PdFit fit;
+  fit.report.smoothing = smoothing;
   table->yield = yield;
   std::vector<nurbs::SurfaceObservation> observations = yield ? gradients(less(points, *yield)) : gradients(points);
   nurbs::SurfaceFit potential = fit_potential(of_potential, of_potential, observations, true, smoothing);
@@ -516,14 +533,15 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
         {r, v, 0, 1, r * (by_x - v / s * by_y) - (2 * r - 1) * yield.slope_on_curve(v), p.weight / (r * r)});
   }
   observations.push_back({1, 0, 0, 0, 0, 1}); // the constant, seen by nothing else
-  nurbs::FitSettings settings{options.smoothing.value_or(smoothing_of_law), 3, true, false, 2};
-  nurbs::SurfaceFit beyond = nurbs::fit(nurbs::from_breaks(options.degree + 1, in_r),
-                                        nurbs::from_breaks(options.degree + 1, in_v), observations, settings);
+  nurbs::SurfaceFit beyond =
+      nurbs::fit(nurbs::from_breaks(options.degree + 1, in_r), nurbs::from_breaks(options.degree + 1, in_v),
+                 observations, {smoothing_of_law, 3, true, false, 2});
   yield.beyond = std::move(beyond.surface);
   auto table = std::make_shared<PdTable>();
   table->yield = std::move(yield);
   table->domain.range = range;
   PdFit fit{std::move(table), {}};
+  fit.report.smoothing = smoothing_of_law;
   fit.report.uncovered = beyond.residuals.uncovered;
   std::vector<StressPoint> held;
   std::copy_if(points.begin(), points.end(), std::back_inserter(held),
@@ -536,6 +554,7 @@ LeFit le_fit(std::span<const StressPoint> points, std::span<const ShearPoint> sh
              std::optional<double> knee, double smoothing, const NurbsOptions& options) {
   auto table = std::make_shared<LeTable>();
   LeFit fit;
+  fit.report.smoothing = fit.shear_report.smoothing = smoothing;
   const std::vector<double> ends1 = strain_breaks(range, options.net[0] - options.degree, knee);
   const std::vector<double> ends2 = strain_breaks(range, options.net[1] - options.degree, knee);
   const std::vector<nurbs::SurfaceObservation> observations = gradients(points);
@@ -679,9 +698,9 @@ void check_pd(std::span<const StressPoint> points, const NurbsOptions& options) 
 PdFit fit_pd_nurbs(std::span<const StressPoint> points, const NurbsOptions& options) {
   check_pd(points, options);
   const StrainRange range = range_of(points, options.range);
-  const double smoothing = options.smoothing.value_or(smoothing_of_points);
-  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, true, smoothing, options);
-  return pd_fit(points, points.size(), range, knee, smoothing, options);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, true, options);
+  return smooth(options.smoothing, smoothing_of_points,
+                [&](double smoothing) { return pd_fit(points, points.size(), range, knee, smoothing, options); });
 }
 
 PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std::span<const StressPoint> points) {
@@ -699,7 +718,6 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
     if (!knee) knee = best_knee(law, range, options.net[0] - options.degree, time);
   }
   const double fill = yield ? fill_of_rest : fill_of_law;
-  const double smoothing = options.smoothing.value_or(yield ? smoothing_of_rest : smoothing_of_law);
   const std::vector<double> places = places_in(strain_breaks(range, options.net[0] - options.degree, knee));
   std::vector<StressPoint> all(points.begin(), points.end());
   for (StressPoint& point : sample(law, pairs(places, places), time)) {
@@ -708,7 +726,11 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
     if (!points.empty()) point.weight *= fill;
     all.push_back(point);
   }
-  return pd_fit(all, points.empty() ? all.size() : points.size(), range, knee, smoothing, options, yield);
+  if (points.empty()) {
+    return pd_fit(all, all.size(), range, knee, options.smoothing.value_or(smoothing_of_law), options);
+  }
+  return smooth(options.smoothing, yield ? smoothing_of_rest : smoothing_of_law,
+                [&](double smoothing) { return pd_fit(all, points.size(), range, knee, smoothing, options, yield); });
 }
 
 LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoint> shear,
@@ -716,9 +738,9 @@ LeFit fit_le_nurbs(std::span<const StressPoint> points, std::span<const ShearPoi
   check(options);
   for (std::size_t i = 0; i < points.size(); ++i) check(points[i], i, options.range);
   const StrainRange range = range_of(points, options.range);
-  const double smoothing = options.smoothing.value_or(smoothing_of_points);
-  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, false, smoothing, options);
-  return le_fit(points, shear, range, knee, smoothing, options);
+  const std::optional<double> knee = options.knee ? options.knee : best_knee(points, range, false, options);
+  return smooth(options.smoothing, smoothing_of_points,
+                [&](double smoothing) { return le_fit(points, shear, range, knee, smoothing, options); });
 }
 
 LeFit fit_le_nurbs(const Law& law, const NurbsOptions& options, double time) {

@@ -36,8 +36,9 @@ struct NurbsOptions {
   // of several, or none, that follows the law or the points best.
   std::optional<double> knee;
   bool potential = true; // stresses from one potential
-  // Of geometry::nurbs::FitSettings. Default: 1e-7 through points alone, which leave cells open; of a law, which leaves
-  // none, 1e-10; of what points add to a law that yields 1e-5.
+  // Of geometry::nurbs::FitSettings. Default: of a law 1e-10; through points 1e-7, of what they add to a law that
+  // yields 1e-5, or ten times as much and again, to 1e-3, until the stress rises everywhere. The surface of a law that
+  // yields itself always has 1e-10.
   std::optional<double> smoothing;
 };
 
@@ -48,6 +49,7 @@ struct FitReport {
   base::Vec2 where = {0, 0}; // strains (E1, E2) of it
   double largest_stress = 0; // of the same points, Pa
   double max_from_fill = 0;  // largest difference from the law that fills what points leave open, Pa
+  double smoothing = 0;      // taken, of geometry::nurbs::FitSettings
   double uncovered = 0;      // part of the cells of the table that no point lies in
   // The Kirchhoff stress (1 + 2 E1) S1 rises with E1 in all of the data, so does 22; of small-strain plasticity S.
   bool monotone = true;

@@ -23,7 +23,7 @@ struct TableBorder {
   double a = 0, b = 0, c = 0;
 };
 
-inline constexpr double table_rounding = 1e-12; // of strains at the end of a table
+inline constexpr double table_rounding = 1e-8; // of strains at the end of a table: of a file's digits, too
 
 // Where a table over two strains has data: a square, or a convex part of it.
 struct TableDomain {

@@ -142,11 +142,12 @@ bool TestPiece::solve(const Control& control, const Vec3& held, double dt, Piece
   if (!ask(state_.strain, dt, found, status_)) return false;
   constexpr int enough = 50;
   constexpr double sharp = 1e-13, rounding = 1e-10; // of the strain: wanted; accepted where no step improves it
+  constexpr double small = 1e-6;                    // strain: tables are free of stress at zero only to rounding
   for (int i = 0; i < enough; ++i) {
     const Mat3 slope = slope_of(control, found);
     const Vec3 step = smallest_solution(slope, held - held_by(control, found));
     const double size = step.norm();
-    const double scale = std::max((found.strain + step).norm(), state_.strain.norm());
+    const double scale = std::max({(found.strain + step).norm(), state_.strain.norm(), small});
     PieceState next;
     double part = 1;
     bool better = false;

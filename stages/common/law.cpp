@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/common/law.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -117,6 +119,17 @@ private:
   }
 
   MaterialLaw make(const workflow::Material& m, const workflow::TableLaw& law) const {
+    const workflow::MissingTests missing = workflow::missing_tests(law);
+    if (missing.useless) refuse(m, "its table cannot be fitted: " + missing.message);
+    MaterialLaw made = fitted(m, law);
+    if (!law.fit_to.empty()) return made;
+    const std::array ratios = workflow::least_stress_ratios(law);
+    if (const double ratio = std::max(ratios[0], ratios[1]); std::isfinite(ratio)) made.least_stress_ratio = ratio;
+    made.missing_tests = missing.message;
+    return made;
+  }
+
+  MaterialLaw fitted(const workflow::Material& m, const workflow::TableLaw& law) const {
     material::NurbsOptions options;
     options.net = law.net;
     options.degree = law.degree;
@@ -155,6 +168,7 @@ std::string text_of(const material::FitReport& fit) {
       fmt::format("rms {:.2g} MPa, at most {:.2g} MPa ({:.2g} % of {:.3g} MPa) at strains ({:.3g}, {:.3g})",
                   fit.rms / megapascal, fit.max / megapascal, 100 * fit.max / fit.largest_stress,
                   fit.largest_stress / megapascal, fit.where[0], fit.where[1]);
+  text += fmt::format("; smoothing {:.0e}", fit.smoothing);
   if (fit.uncovered > 0) text += fmt::format("; {:.0f} % of the table holds no point", 100 * fit.uncovered);
   if (fit.integrability_defect > 0) {
     text += fmt::format("; without a potential, integrability defect {:.2g}: equilibrium takes more iterations",
@@ -163,10 +177,21 @@ std::string text_of(const material::FitReport& fit) {
   return text;
 }
 
-std::string not_monotone(const std::string& name, const material::FitReport& fit) {
-  return fmt::format("the stress of the table `{}` does not rise with the strain everywhere, least at strains ({:.3g}, "
-                     "{:.3g}): more weight on smoothing, a coarser net or more points may help",
-                     name, fit.not_monotone[0], fit.not_monotone[1]);
+std::vector<std::string> warnings_of(const std::string& name, const MaterialLaw& made) {
+  constexpr const char* help = "a coarser net, more points or, where `smoothing` is given, more of it may help";
+  std::vector<std::string> warnings;
+  if (made.fit && !made.fit->monotone) {
+    warnings.push_back(
+        fmt::format("the stress of the table `{}` does not rise with the strain everywhere, least at strains ({:.3g}, "
+                    "{:.3g}): {}",
+                    name, made.fit->not_monotone[0], made.fit->not_monotone[1], help));
+  }
+  if (made.shear_fit && !made.shear_fit->monotone) {
+    warnings.push_back(fmt::format("the shear stress of the table `{}` does not rise with the strain everywhere, least "
+                                   "at a shear strain of {:.3g}: {}",
+                                   name, made.shear_fit->not_monotone[0], help));
+  }
+  return warnings;
 }
 
 } // namespace
@@ -180,9 +205,13 @@ MaterialLaw law_of(const std::map<std::string, workflow::Material>& materials, c
 }
 
 void say_fit(const std::string& name, const MaterialLaw& made) {
-  if (made.fit) base::say(fmt::format("table of `{}`: {}", name, text_of(*made.fit)));
+  if (made.fit) {
+    std::string text = text_of(*made.fit);
+    if (!made.missing_tests.empty()) text += "; no test near uniaxial stress";
+    base::say(fmt::format("table of `{}`: {}", name, text));
+  }
   if (made.shear_fit) base::say(fmt::format("its shear: {}", text_of(*made.shear_fit)));
-  if (made.fit && !made.fit->monotone) base::warn(not_monotone(name, *made.fit));
+  for (const std::string& warning : warnings_of(name, made)) base::warn(warning);
 }
 
 MaterialLaws laws_of(const workflow::Workflow& workflow) {
@@ -209,11 +238,18 @@ void summarize(const MaterialLaws& laws, Summary& summary) {
       summary.set(key + "largest_stress", fit.largest_stress);
       summary.set(key + "strain_1", fit.where[0]);
       summary.set(key + "strain_2", fit.where[1]);
+      summary.set(key + "smoothing", fit.smoothing);
       summary.set(key + "uncovered", fit.uncovered);
       summary.set(key + "monotone", fit.monotone);
       summary.set(key + "integrability_defect", fit.integrability_defect);
     }
-    if (made.fit && !made.fit->monotone) summary.append("warnings", not_monotone(name, *made.fit));
+    if (made.least_stress_ratio) {
+      summary.set(fmt::format("materials.{}.fit.least_stress_ratio", name), *made.least_stress_ratio);
+    }
+    for (const std::string& warning : warnings_of(name, made)) summary.append("warnings", warning);
+    if (!made.missing_tests.empty()) {
+      summary.append("warnings", fmt::format("table `{}`: {}", name, made.missing_tests));
+    }
   }
 }
 

@@ -16,6 +16,9 @@ class Summary;
 struct MaterialLaw {
   solver::material::Law law;
   std::optional<solver::material::FitReport> fit, shear_fit; // shear: of LE-NURBS
+  std::string missing_tests = {};                            // what the points of its table leave open; empty: nothing
+  // Of points without a law that fills: workflow::least_stress_ratios, the larger one.
+  std::optional<double> least_stress_ratio = {};
 };
 
 using MaterialLaws = std::map<std::string, MaterialLaw>; // by the name of the material
@@ -32,7 +35,8 @@ void say_fit(const std::string& name, const MaterialLaw& made);
 // Laws of all foils at the site's temperature, each made once. Says how tables are fitted.
 MaterialLaws laws_of(const pipeline::workflow::Workflow& workflow);
 
-// Writes the keys materials.<name>.fit.* of tables, and warnings where one does not rise with the strain.
+// Writes the keys materials.<name>.fit.* of tables, and warnings where one does not rise with the strain
+// or its tests leave strains open.
 void summarize(const MaterialLaws& laws, Summary& summary);
 
 } // namespace pneuma::stages::common

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/log.h"
 #include "pipeline/test_data/test_data.h"
 
 namespace pneuma::stages::material {
@@ -18,7 +19,9 @@ namespace {
 // From the axis of the larger stress: the smaller one over it.
 Ratio ratio_of(const std::vector<TestPoint>& points) {
   base::Mat2 products = base::Mat2::Zero();
-  for (const TestPoint& point : points) products += point.weight * point.stress * point.stress.transpose();
+  for (const TestPoint& point : points) {
+    products += point.weight * point.stress.head<2>() * point.stress.head<2>().transpose();
+  }
   const int larger = products(1, 1) > products(0, 0) ? 1 : 0;
   constexpr double none = 0.01;
   double smaller = products(0, 1) / products(larger, larger);
@@ -28,15 +31,36 @@ Ratio ratio_of(const std::vector<TestPoint>& points) {
 
 // How far the stresses are from their ratio, as a part of the largest one.
 double scatter_of(const TestCurve& test) {
-  const Vec2 direction(test.ratio.a, test.ratio.b);
+  const Vec3 direction(test.ratio.a, test.ratio.b, 0);
   double largest = 0;
   double off = 0;
   for (const TestPoint& point : test.points) {
-    const Vec2 rest = point.stress - direction * direction.dot(point.stress) / direction.squaredNorm();
+    const Vec3 rest = point.stress - direction * direction.dot(point.stress) / direction.squaredNorm();
     off = std::max(off, rest.norm());
     largest = std::max(largest, point.stress.norm());
   }
   return off / largest;
+}
+
+// Mean temperature of a test; none: not measured.
+std::optional<double> temperature_of(const std::vector<pipeline::test_data::Row>& rows, const std::string& name) {
+  double sum = 0;
+  double least = rows.front().temperature;
+  double most = least;
+  for (const auto& row : rows) {
+    sum += row.temperature;
+    least = std::min(least, row.temperature);
+    most = std::max(most, row.temperature);
+  }
+  if (std::isnan(sum)) return std::nullopt;
+  const double mean = sum / static_cast<double>(rows.size());
+  constexpr double steady = 5; // K, from the least to the most
+  if (most - least > steady) {
+    base::warn(fmt::format("{}: the temperature runs from {:.4g} to {:.4g} degC; the test is taken to be at the mean, "
+                           "{:.4g} degC",
+                           name, celsius(least), celsius(most), celsius(mean)));
+  }
+  return mean;
 }
 
 } // namespace
@@ -47,22 +71,48 @@ TestCurve read_test(const std::filesystem::path& file) {
   const std::string name = file.generic_string();
   const std::string text = pipeline::schema::read_text(file, {"--data", 0, 0}, problems);
   if (!problems.empty()) throw base::InputError(fmt::format("--data: {}", problems.front().message));
-  const auto rows = test_data::parse(text, name, test_data::Measure::engineering, {"strain_1", "stress_1"}, problems);
-  if (!problems.empty()) {
-    std::vector<std::string> all;
-    for (const auto& problem : problems) all.push_back(to_string(problem));
-    throw base::InputError(fmt::format("{}", fmt::join(all, "\n")));
+  const bool has_shear = text.find("shear_strain") != std::string::npos;
+  const bool is_shear = has_shear && text.find("strain_1") == std::string::npos;
+  const std::vector<std::string> needed = is_shear ? std::vector<std::string>{"shear_strain", "shear_stress"}
+                                                   : std::vector<std::string>{"strain_1", "stress_1"};
+  const auto rows = test_data::parse(text, name, test_data::Measure::engineering, needed, problems);
+  std::vector<std::string> errors;
+  for (const auto& problem : problems) {
+    if (problem.error) {
+      errors.push_back(to_string(problem));
+    } else {
+      fmt::print(stderr, "{}\n", to_string(problem));
+    }
+  }
+  if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
+  if (has_shear && !is_shear) {
+    base::warn(fmt::format(
+        "{}: shear beside other strains is not compared; a file without `strain_1` is a test in shear", name));
   }
   const auto measured = [](double value) { return std::isnan(value) ? 0 : value; };
   TestCurve test;
   test.name = file.stem().string();
   for (const test_data::Row& row : rows) {
     TestPoint point;
-    point.strain = Vec2(row.strain_1, measured(row.strain_2));
-    point.stress = Vec2(row.stress_1, measured(row.stress_2));
+    if (is_shear) {
+      point.strain = Vec3(0, 0, row.shear_strain);
+      point.stress = Vec3(0, 0, row.shear_stress);
+    } else {
+      point.strain = Vec3(row.strain_1, measured(row.strain_2), 0);
+      point.stress = Vec3(row.stress_1, measured(row.stress_2), 0);
+    }
     if (!std::isnan(row.time)) point.time = row.time - rows.front().time;
     point.weight = row.weight;
     test.points.push_back(point);
+  }
+  test.temperature = temperature_of(rows, name);
+  if (is_shear) {
+    test.ratio = pure_shear;
+    return test;
+  }
+  const auto is_unloaded = [](const TestPoint& point) { return point.weight == 0 || point.stress.isZero(0); };
+  if (std::all_of(test.points.begin(), test.points.end(), is_unloaded)) {
+    throw base::InputError(fmt::format("{}: no row with a weight has a stress", name));
   }
   test.ratio = ratio_of(test.points);
   if (driven_axis(test.ratio) == 1 && std::isnan(rows.front().strain_2)) {
@@ -82,7 +132,7 @@ TestCurve read_test(const std::filesystem::path& file) {
 Misfit misfit(const law::Law& material, const TestCurve& test, const Options& options, std::optional<double> rate) {
   Misfit result;
   law::TestPiece piece(material, options.angle);
-  const law::Control control = law::biaxial(test.ratio.a, test.ratio.b);
+  const law::Control control = control_of(test.ratio);
   const int axis = driven_axis(test.ratio);
   const bool both = test.ratio.a != 0 && test.ratio.b != 0;
   double squares = 0;
@@ -109,9 +159,9 @@ Misfit misfit(const law::Law& material, const TestCurve& test, const Options& op
       result.end = fmt::format("not compared from a strain of {:.3g} % on: {}", 100 * point.strain[axis], why);
     }
     if (!result.end.empty()) break;
-    const Vec2 difference = piece.state().nominal_stress().head<2>() - point.stress;
-    for (int i = 0; i < 2; ++i) {
-      if (!both && i != axis) continue;
+    const Vec3 difference = piece.state().nominal_stress() - point.stress;
+    for (int i = 0; i < 3; ++i) {
+      if (i != axis && !(both && i < 2)) continue;
       squares += point.weight * difference[i] * difference[i];
       weights += point.weight;
       if (!(std::abs(difference[i]) > result.max)) continue;

@@ -5,24 +5,30 @@
 
 namespace pneuma::stages::material {
 
-// A point of a test: engineering strains, -; nominal stresses, Pa.
+// A point of a test: engineering strains and 2 E12, -; nominal stresses and S12, Pa.
 struct TestPoint {
-  Vec2 strain = Vec2::Zero();
-  Vec2 stress = Vec2::Zero();
+  Vec3 strain = Vec3::Zero();
+  Vec3 stress = Vec3::Zero();
   std::optional<double> time; // s
   double weight = 1;
 };
+
+inline double celsius(double kelvin) {
+  return kelvin - 273.15;
+}
 
 // What a test machine measured of one piece, in the order of time.
 struct TestCurve {
   std::string name;
   std::vector<TestPoint> points;
-  Ratio ratio; // of the stresses
+  Ratio ratio;                       // of the stresses
+  std::optional<double> temperature; // K, mean
 };
 
 // Reads a file of test data (pipeline/test_data), one test a file. The ratio of its stresses is their least-squares
-// one, the larger 1; below 1 % the smaller is taken to be none, as where it was not measured. Throws InputError with
-// every fault, each with file, line and column, and where the stresses have no common ratio.
+// one, the larger 1; below 1 % the smaller is taken to be none, as where it was not measured. A file
+// of shear strains without others is a test in shear. Warns of what is implausible. Throws InputError with every fault,
+// each with file, line and column, and where the stresses have no common ratio.
 TestCurve read_test(const std::filesystem::path& file);
 
 // How far a law's stresses are from those of a test: the piece is pulled through the measured strains along the axis of

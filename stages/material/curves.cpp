@@ -26,7 +26,11 @@ bool pull(law::TestPiece& piece, const law::Control& control, double to, std::op
 Shown shown(const PieceState& state, bool true_measures) {
   const base::Vec3 strain = true_measures ? state.logarithmic_strain() : state.engineering_strain();
   const base::Vec3 stress = true_measures ? state.true_stress() : state.nominal_stress();
-  return {strain.head<2>(), stress.head<2>()};
+  return {strain, stress};
+}
+
+law::Control control_of(const Ratio& ratio) {
+  return ratio.shear ? law::shear() : law::biaxial(ratio.a, ratio.b);
 }
 
 double engineering(double strain, bool true_measures) {
@@ -38,7 +42,7 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
   curve.ratio = ratio;
   curve.rate = rate;
   law::TestPiece piece(material, options.angle);
-  const law::Control control = law::biaxial(ratio.a, ratio.b);
+  const law::Control control = control_of(ratio);
   const auto to = [&](int step) { return engineering(options.strain * step / options.steps, options.true_measures); };
   curve.loading.push_back(piece.state());
   for (int i = 1; i <= options.steps; ++i) {
@@ -58,7 +62,8 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
     if (force(next) <= none) {
       const double part = force(piece) / (force(piece) - force(next));
       const double duration = rate ? part * (next.state().time - piece.state().time) : 0;
-      if (piece.advance(law::stresses({ratio.a, ratio.b, 0}), 0, duration)) curve.unloading.push_back(piece.state());
+      if (piece.advance(law::stresses({ratio.a, ratio.b, ratio.shear ? 1.0 : 0.0}), 0, duration))
+        curve.unloading.push_back(piece.state());
       return curve;
     }
     piece = next;

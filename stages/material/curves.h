@@ -6,15 +6,17 @@
 
 namespace pneuma::stages::material {
 
-using base::Vec2;
+using base::Vec3;
 using solver::material::PieceState;
 
 // Strain and stress along the two axes, in the measures that are shown: engineering and nominal, or logarithmic and
-// Cauchy (-, Pa).
+// Cauchy (-, Pa); third: 2 E12 and S12.
 struct Shown {
-  Vec2 strain, stress;
+  Vec3 strain, stress;
 };
 Shown shown(const PieceState& state, bool true_measures);
+
+solver::material::Control control_of(const Ratio& ratio);
 
 // The engineering strain of a strain that is shown, and back.
 double engineering(double strain, bool true_measures);
@@ -34,8 +36,9 @@ struct Curve {
 };
 Curve follow(const solver::material::Law& law, const Ratio& ratio, const Options& options, std::optional<double> rate);
 
-// The axis whose strain drives: that of the larger stress.
+// The component whose strain drives: that of the larger stress, or shear.
 inline int driven_axis(const Ratio& ratio) {
+  if (ratio.shear) return 2;
   return std::abs(ratio.b) > std::abs(ratio.a) ? 1 : 0;
 }
 

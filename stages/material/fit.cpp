@@ -35,10 +35,17 @@ FittedLaw fit(const TestCurve& test, const Options& options, double poissons_rat
   }
   const auto found = law::fit_hardening(points, options.branches, options.softening);
   if (!found) {
-    throw base::InputError(
-        fmt::format("--fit {}: `{}` cannot carry so many branches: its {} points up to the largest strain are too few, "
-                    "or do not bend; ask for fewer{}",
-                    options.branches, test.name, points.size(), options.softening ? "" : ", or for --softening"));
+    const auto is_pulled = [](const law::CurvePoint& point) { return point.strain > 0 && point.weight > 0; };
+    const auto pulled = std::count_if(points.begin(), points.end(), is_pulled);
+    const int enough = 2 * options.branches + 1;
+    const std::string why =
+        pulled < enough
+            ? fmt::format("has {} points in tension up to its largest strain, fewer than the {} that so many "
+                          "branches take; ask for fewer",
+                          pulled, enough)
+            : fmt::format("does not yield: its curve does not bend as that of a hardening foil{}",
+                          options.softening ? "" : "; --softening is for one that falls");
+    throw base::InputError(fmt::format("--fit {}: `{}` {}", options.branches, test.name, why));
   }
   return {*found, poissons_ratio, logarithmic};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -18,7 +20,9 @@ namespace {
 
 namespace workflow = pipeline::workflow;
 using base::say;
+using solver::material::Law;
 
+constexpr double same_temperature = 2; // K, of rooms
 constexpr double standard_rate = 1e-3; // 1/s, of quasi-static tests
 
 workflow::MaterialsResult read_materials(const Options& options) {
@@ -32,7 +36,8 @@ workflow::MaterialsResult read_materials(const Options& options) {
     }
   }
   for (const std::string& name : options.names) {
-    if (std::find(result.names.begin(), result.names.end(), name) != result.names.end()) continue;
+    if (result.names.empty() || std::find(result.names.begin(), result.names.end(), name) != result.names.end())
+      continue;
     errors.push_back(fmt::format("{}: there is no material `{}`{}; materials: {}", options.materials.generic_string(),
                                  name, pipeline::schema::suggestion(name, result.names),
                                  pipeline::schema::joined(result.names)));
@@ -47,17 +52,18 @@ TestCurve as_test(const Curve& curve) {
   test.name = curve.material;
   test.ratio = curve.ratio;
   for (const PieceState& state : curve.loading) {
-    test.points.push_back({state.engineering_strain().head<2>(), state.nominal_stress().head<2>(), state.time, 1});
+    test.points.push_back({state.engineering_strain(), state.nominal_stress(), state.time, 1});
   }
   return test;
 }
 
 void say_misfit(const Misfit& misfit, const TestCurve& test) {
+  const std::string at = test.temperature ? fmt::format(", taken at {:.4g} degC", celsius(*test.temperature)) : "";
   if (misfit.points > 0) {
     say(fmt::format(
-        "  against test {} ({}, {} points): rms {:.3g} MPa ({:.2g} %), max {:.3g} MPa ({:.2g} %) at a strain "
+        "  against test {} ({}, {} points{}): rms {:.3g} MPa ({:.2g} %), max {:.3g} MPa ({:.2g} %) at a strain "
         "of {:.3g} %",
-        test.name, name_of(test.ratio), misfit.points, misfit.rms / 1e6, 100 * misfit.rms / misfit.measured,
+        test.name, name_of(test.ratio), misfit.points, at, misfit.rms / 1e6, 100 * misfit.rms / misfit.measured,
         misfit.max / 1e6, 100 * misfit.max / misfit.measured, 100 * misfit.at));
   }
   if (!misfit.end.empty()) say(fmt::format("  test {}: {}", test.name, misfit.end));
@@ -68,19 +74,27 @@ class Bench {
 public:
   Bench(const Options& options, const std::map<std::string, workflow::Material>& materials,
         const std::vector<TestCurve>& tests)
-      : options_(options), materials_(materials), tests_(tests), drawn_tests_(tests) {}
+      : options_(options), materials_(materials), tests_(tests), test_temperature_(common_temperature(tests)),
+        drawn_tests_(tests) {}
 
   void show(const workflow::Material& material) {
     std::map<std::string, workflow::Material> taut = materials_;
     taut.at(material.name).tension_field = false;
     say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
-    if (const auto range = workflow::temperatures_of(material); options_.temperature && !range) {
+    if (!temperatures_of(material) && (options_.temperature || is_measured_elsewhere())) {
       say("  does not depend on the temperature");
     }
     if (material.tension_field) say("  without its tension field, which changes nothing in tension");
-    const common::MaterialLaw made = common::law_of(taut, material.name, temperature());
+    const double temperature = temperature_for(material);
+    if (temperature != temperature_without_tests())
+      say(fmt::format("  at {:.4g} degC, as the tests", celsius(temperature)));
+    const common::MaterialLaw made = common::law_of(taut, material.name, temperature);
     common::say_fit(material.name, made);
-    show(material.name, made.law);
+    show(material.name, made.law, [&](const TestCurve& test) -> std::optional<Law> {
+      if (!temperatures_of(material) || options_.temperature || !test.temperature) return made.law;
+      if (!has_values(material, *test.temperature)) return std::nullopt;
+      return common::law_of(taut, material.name, *test.temperature).law;
+    });
   }
 
   void show_fit(const workflow::Material& material) {
@@ -95,17 +109,19 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        workflow::law_at(material, temperature()));
+        workflow::law_at(material, temperature_for(material)));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::size_t count = fitted.hardening.branches.size();
     const std::string name = fmt::format("{}_{}", material.name, count);
     say(fmt::format("{}: the {} hardening branch{} nearest to {}{}; nu and kind of strain as of {}", name, count,
                     count == 1 ? "" : "es", test.name,
-                    static_cast<int>(count) < options_.branches ? ", more fit no better" : "", material.name));
-    const solver::material::Law law = law_of(fitted);
-    show(name, law);
+                    static_cast<int>(count) < options_.branches ? ", a branch more would fit noise" : "",
+                    material.name));
+    const Law law = law_of(fitted);
+    show(name, law, [&](const TestCurve&) { return law; });
     if (tests_.empty()) say_misfit(misfit(law, test, options_, std::nullopt), test);
-    say(yaml_of(fitted, name, fmt::format("fitted to {} by pneuma material --fit", test.name)));
+    const std::string at = test.temperature ? fmt::format(" at {:.4g} degC", celsius(*test.temperature)) : "";
+    say(yaml_of(fitted, name, fmt::format("fitted to {}{} by pneuma material --fit", test.name, at)));
   }
 
   void write() const {
@@ -115,7 +131,9 @@ public:
   }
 
 private:
-  void show(const std::string& name, const solver::material::Law& law) {
+  // `law_at`: the law at the temperature of a test; none: it has no values there.
+  void show(const std::string& name, const Law& law,
+            const std::function<std::optional<Law>(const TestCurve&)>& law_at) {
     std::vector<std::optional<double>> rates = {std::nullopt};
     if (solver::material::is_rate_dependent(law)) {
       rates.assign(options_.rates.begin(), options_.rates.end());
@@ -136,15 +154,56 @@ private:
       if (!curve.end.empty()) say(fmt::format("  {} {}", name_of(curve.ratio), curve.end));
     }
     for (const TestCurve& test : tests_) {
-      for (const std::optional<double>& rate : rates) say_misfit(misfit(law, test, options_, rate), test);
+      const std::optional<Law> of_test = law_at(test);
+      if (!of_test) {
+        say(fmt::format("  test {}: not compared, {:.4g} degC is outside the temperatures of the material", test.name,
+                        celsius(*test.temperature)));
+        continue;
+      }
+      for (const std::optional<double>& rate : rates) say_misfit(misfit(*of_test, test, options_, rate), test);
     }
   }
 
-  double temperature() const { return options_.temperature.value_or(workflow::Site().temperature); }
+  double temperature_without_tests() const { return options_.temperature.value_or(workflow::Site().temperature); }
+
+  // Of the curves: what is asked for, or that of the tests where the material has values there.
+  double temperature_for(const workflow::Material& material) const {
+    const bool as_tests = !options_.temperature && test_temperature_ && has_values(material, *test_temperature_);
+    return as_tests ? *test_temperature_ : temperature_without_tests();
+  }
+
+  bool has_values(const workflow::Material& material, double temperature) const {
+    const auto range = temperatures_of(material);
+    return range && temperature >= (*range)[0] && temperature <= (*range)[1];
+  }
+
+  // Where a material has values: between its own temperatures, or those of what its table is fitted to.
+  std::optional<std::array<double, 2>> temperatures_of(const workflow::Material& material) const {
+    const auto* table = std::get_if<workflow::TableLaw>(&material.law);
+    if (table != nullptr && !table->fit_to.empty()) return temperatures_of(materials_.at(table->fit_to));
+    return workflow::temperatures_of(material);
+  }
+
+  bool is_measured_elsewhere() const {
+    return std::any_of(tests_.begin(), tests_.end(), [](const TestCurve& test) {
+      return test.temperature && std::abs(*test.temperature - workflow::Site().temperature) > same_temperature;
+    });
+  }
+
+  // That of all tests which name one.
+  static std::optional<double> common_temperature(const std::vector<TestCurve>& tests) {
+    std::optional<double> common;
+    for (const TestCurve& test : tests) {
+      if (!test.temperature) continue;
+      if (common && std::abs(*common - *test.temperature) > same_temperature) return std::nullopt;
+      if (!common) common = test.temperature;
+    }
+    return common;
+  }
 
   // What is to be fitted: the uniaxial test, or the material's own curve.
   TestCurve uniaxial_test(const std::string& name) const {
-    const auto is_uniaxial = [](const auto& one) { return one.ratio.a == 0 || one.ratio.b == 0; };
+    const auto is_uniaxial = [](const auto& one) { return !one.ratio.shear && (one.ratio.a == 0 || one.ratio.b == 0); };
     if (const auto test = std::find_if(tests_.begin(), tests_.end(), is_uniaxial); test != tests_.end()) return *test;
     if (!tests_.empty()) throw base::InputError("--fit: none of the tests is uniaxial");
     const auto curve = std::find_if(curves_.begin(), curves_.end(), is_uniaxial);
@@ -160,6 +219,7 @@ private:
   const Options& options_;
   const std::map<std::string, workflow::Material>& materials_;
   const std::vector<TestCurve>& tests_;
+  std::optional<double> test_temperature_; // K; none: tests name none, or several
   std::vector<Curve> curves_;
   std::vector<TestCurve> drawn_tests_;
   std::size_t first_drawn_ = 0; // a picture of a fit shows it and what it was fitted to
@@ -170,11 +230,16 @@ int run(int argc, char** argv) {
     std::puts(usage());
     return 0;
   }
-  const Options options = parse(argc, argv);
+  Options options = parse(argc, argv);
   const workflow::MaterialsResult read = read_materials(options);
   const std::vector<workflow::Material>& materials = read.materials;
   std::vector<TestCurve> tests;
   for (const std::filesystem::path& file : options.data) tests.push_back(read_test(file));
+  const auto is_shear = [](const auto& ratio) { return ratio.shear; };
+  if (std::any_of(tests.begin(), tests.end(), [&](const TestCurve& test) { return is_shear(test.ratio); }) &&
+      std::none_of(options.ratios.begin(), options.ratios.end(), is_shear)) {
+    options.ratios.push_back(pure_shear); // drawn under the test
+  }
   if (options.branches > 0 && materials.size() != 1) {
     throw base::InputError(fmt::format("--fit fits one material; name one of the {}", materials.size()));
   }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/log.h"
 #include "pipeline/schema/command_line.h"
 #include "pipeline/schema/quantity.h"
 
@@ -49,6 +50,10 @@ void set_strain(Options& options, const std::string& text) {
   if (!(options.strain > 0 && options.strain <= 10)) {
     throw InputError(fmt::format("--strain: `{}` is not above 0 and up to 10 (1000 %)", text));
   }
+  constexpr double usual = 5;
+  if (options.strain >= usual && parse_number(text)) {
+    base::warn(fmt::format("--strain: {0} is {1:g} %; is `{0} %` meant?", text, 100 * options.strain));
+  }
 }
 
 void set_rates(Options& options, const std::string& text) {
@@ -62,11 +67,16 @@ void set_rates(Options& options, const std::string& text) {
 void set_ratios(Options& options, const std::string& text) {
   options.ratios.clear();
   for (const std::string& one : parts(text)) {
+    if (one == "shear") {
+      options.ratios.push_back(pure_shear);
+      continue;
+    }
     const std::size_t colon = one.find(':');
     const auto a = parse_number(one.substr(0, colon));
     const auto b = parse_number(colon == std::string::npos ? std::string() : one.substr(colon + 1));
     if (!a || !b || (*a == 0 && *b == 0)) {
-      throw InputError(fmt::format("--ratios: `{}` is no ratio of stresses such as 1:0 (uniaxial), 1:1 or 2:1", one));
+      throw InputError(
+          fmt::format("--ratios: `{}` is no ratio of stresses such as 1:0 (uniaxial), 1:1 or 2:1, nor `shear`", one));
     }
     options.ratios.push_back({*a, *b});
   }
@@ -105,16 +115,18 @@ const std::vector<pipeline::schema::Switch<Options>>& switches() {
 } // namespace
 
 std::string name_of(const Ratio& ratio) {
+  if (ratio.shear) return "shear";
   if (ratio.b == 0) return "uniaxial";
-  return fmt::format("{:g}:{:g}", ratio.a, ratio.b);
+  return fmt::format("{:.4g}:{:.4g}", ratio.a, ratio.b);
 }
 
 const char* usage() {
   return "usage: pneuma material MATERIALS.yaml [NAME ...] [options]\n"
          "  --strain E           pull the pieces to this engineering strain, and back to no force [10 %]\n"
          "  --ratios A:B,...     nominal stresses along the two axes; 1:0 is uniaxial [1:0,1:1,2:1]\n"
+         "                       shear: 2 E12, with free sides\n"
          "  --rate R,...         strain rates of foils that know time, 1/s [0.001]\n"
-         "  --temperature T      of the foil, where its values depend on it [23 degC]\n"
+         "  --temperature T      of the foil, where its values depend on it [that of the tests; 23 degC]\n"
          "  --angle A            from the warp direction to the first axis [0 deg]\n"
          "  --true               logarithmic strain and Cauchy stress [engineering strain and nominal stress]\n"
          "  --steps N            of loading [100]\n"
@@ -141,6 +153,10 @@ Options parse(int argc, char** argv) {
   }
   if (options.true_measures && !options.data.empty()) {
     throw InputError("--true: tests are in engineering strain and nominal stress; leave --data out, or --true");
+  }
+  const auto is_shear = [](const Ratio& ratio) { return ratio.shear; };
+  if (options.true_measures && std::any_of(options.ratios.begin(), options.ratios.end(), is_shear)) {
+    throw InputError("--true: has no meaning in shear; leave `shear` out of --ratios, or --true");
   }
   if (!options.svg.empty() && options.svg.extension() != ".svg") {
     throw InputError(fmt::format("--svg: `{}` does not end in .svg", options.svg.string()));

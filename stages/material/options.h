@@ -8,11 +8,13 @@
 
 namespace pneuma::stages::material {
 
-// Nominal stresses along the two axes of a test piece.
+// How a test piece is pulled: by nominal stresses along its two axes, or by a shear stress alone.
 struct Ratio {
   double a = 1, b = 0; // b = 0: uniaxial
+  bool shear = false;  // then a and b are 0
 };
-std::string name_of(const Ratio& ratio); // "uniaxial", "2:1"
+inline constexpr Ratio pure_shear = {0, 0, true};
+std::string name_of(const Ratio& ratio); // "uniaxial", "2:1", "shear"
 
 // What the command line asks for.
 struct Options {

@@ -37,9 +37,9 @@ std::string rate_of(const Curve& curve) {
   return curve.rate ? fmt::format("{:g} 1/s", *curve.rate) : "";
 }
 
-std::vector<Vec2> points_of(const Curve& curve, bool true_measures) {
+std::vector<base::Vec2> points_of(const Curve& curve, bool true_measures) {
   const int axis = driven_axis(curve.ratio);
-  std::vector<Vec2> points;
+  std::vector<base::Vec2> points;
   for (const auto* part : {&curve.loading, &curve.unloading}) {
     for (const PieceState& state : *part) {
       const Shown at = shown(state, true_measures);
@@ -86,18 +86,21 @@ std::string table(std::span<const Curve> curves, const Options& options) {
 void write_csv(std::span<const Curve> curves, const Options& options) {
   const char* strain = options.true_measures ? "logarithmic_strain" : "strain";
   const char* stress = options.true_measures ? "cauchy_stress" : "stress";
-  std::string text = fmt::format("material, ratio, rate [1/s], part, time [s], {0}_1 [-], {0}_2 [-], {1}_1 [MPa], "
-                                 "{1}_2 [MPa], thickness_stretch [-], stored_energy [MJ/m3]\n",
-                                 strain, stress);
+  std::string text =
+      fmt::format("material, ratio, rate [1/s], part, time [s], {0}_1 [-], {0}_2 [-], {1}_1 [MPa], "
+                  "{1}_2 [MPa], thickness_stretch [-], stored_energy [MJ/m3], shear_strain [-], shear_stress "
+                  "[MPa]\n",
+                  strain, stress);
   for (const Curve& curve : curves) {
     for (const auto* part : {&curve.loading, &curve.unloading}) {
       for (const PieceState& state : *part) {
         const Shown at = shown(state, options.true_measures);
         fmt::format_to(std::back_inserter(text),
-                       "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n", curve.material,
-                       name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
+                       "{}, {}, {}, {}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}\n",
+                       curve.material, name_of(curve.ratio), curve.rate ? fmt::format("{:g}", *curve.rate) : "",
                        part == &curve.loading ? "loading" : "unloading", state.time, at.strain[0], at.strain[1],
-                       at.stress[0] / 1e6, at.stress[1] / 1e6, state.thickness_stretch, state.energy / 1e6);
+                       at.stress[0] / 1e6, at.stress[1] / 1e6, state.thickness_stretch, state.energy / 1e6,
+                       at.strain[2], at.stress[2] / 1e6);
       }
     }
   }

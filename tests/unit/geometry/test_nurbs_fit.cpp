@@ -179,6 +179,36 @@ TEST(SurfaceFit, PotentialFollowsItsGradient) {
   }
 }
 
+TEST(SurfaceFit, BeginsFlatWhereAsked) {
+  // (u - 1)^2 cos v beside something that is not flat
+  const Knots u = uniform(3, 10, 1, 3);
+  const Knots v = uniform(3, 10, -1, 1);
+  std::vector<SurfaceObservation> flat;
+  std::vector<SurfaceObservation> raised;
+  for (int i = 0; i <= 40; ++i) {
+    for (int j = 0; j <= 40; ++j) {
+      const double a = 1 + i / 20.0;
+      const double b = j / 20.0 - 1;
+      flat.push_back({a, b, 0, 0, (a - 1) * (a - 1) * std::cos(b), 1});
+      raised.push_back({a, b, 0, 0, flat.back().value + 0.1, 1});
+    }
+  }
+  const SurfaceFit good = fit(u, v, flat, {.smoothing = 1e-12, .flat_start = 2});
+  const SurfaceFit forced = fit(u, v, raised, {.smoothing = 1e-12, .flat_start = 2});
+  EXPECT_LT(good.residuals.max, 1e-4); // order 4 of spans of 2/7
+  EXPECT_NEAR(forced.residuals.max, 0.1, 1e-12);
+  for (const SurfaceFit& found : {good, forced}) {
+    for (const double b : {-1.0, -0.2, 0.7}) {
+      const SurfaceJet<1> at = evaluate(found.surface, 1, b);
+      EXPECT_EQ(at.value[0], 0);
+      EXPECT_EQ(at.u[0], 0);
+      EXPECT_EQ(at.vv[0], 0);
+    }
+  }
+  EXPECT_THAT(message_of([&] { fit(u, u, flat, {.symmetric = true, .flat_start = 1}); }),
+              testing::HasSubstr("flat start"));
+}
+
 TEST(SurfaceFit, RefusesPointsOnALine) {
   const Knots knots = uniform(3, 8, 0, 1);
   std::vector<SurfaceObservation> observations;

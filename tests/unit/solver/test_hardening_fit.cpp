@@ -103,6 +103,23 @@ TEST(HardeningFit, NoMoreBranchesThanTheCurveHas) {
   EXPECT_NEAR(fit->branches[1].stress / 27e6, 1, 1e-9);
 }
 
+TEST(HardeningFit, NoBranchesForTheNoiseOfRoundedOrScatteredPoints) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0, 0.2e6);
+  std::vector<CurvePoint> rounded_9 = curve_of(etfe, 0.3, 100), rounded_4 = rounded_9, scattered = rounded_9;
+  const auto round_to = [](double value, double step) { return step * std::round(value / step); };
+  for (std::size_t i = 0; i < rounded_9.size(); ++i) {
+    rounded_9[i].stress = round_to(rounded_9[i].stress, 0.1); // nine digits
+    rounded_4[i].stress = round_to(rounded_4[i].stress, 1e4); // four
+    scattered[i].stress += noise(random);
+  }
+  for (const auto& points : {rounded_9, rounded_4, scattered}) {
+    const auto fit = fit_hardening(points, 6);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->branches.size(), 2U);
+  }
+}
+
 TEST(HardeningFit, SofteningOnlyWhereItIsAskedFor) {
   const HardeningFit law{1000e6, {{20e6, 100e6}, {30e6, -40e6}, {26e6, 20e6}}, 0};
   const std::vector<CurvePoint> points = curve_of(law, 0.35, 140);

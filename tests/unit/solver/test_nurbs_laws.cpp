@@ -438,6 +438,30 @@ TEST(PdNurbs, OfALawThatYieldsGoesOnLinearlyPastItsEnd) {
   EXPECT_NEAR(at.stress[0] / expected, 1, 1e-12);
 }
 
+TEST(PdNurbsFit, SmoothsPointsUntilTheirStressRises) {
+  // ETFE in strains of which the second is 1, 0.2 and -0.35 of the first
+  std::vector<StressPoint> points;
+  for (const double ratio : {1.0, 0.2, -0.35}) {
+    for (int i = 1; i <= 40; ++i) {
+      const double e1 = 0.15 * i / 40;
+      double plastic = 0;
+      const Vec3 stress = loaded(etfe, Vec3(e1, ratio * e1, 0), plastic).stress;
+      points.push_back({e1, ratio * e1, stress[0], stress[1], 1});
+    }
+  }
+  NurbsOptions options; // all of them left open
+  const PdFit chosen = fit_pd_nurbs(points, options);
+  EXPECT_TRUE(chosen.report.monotone);
+  EXPECT_GT(chosen.report.smoothing, 1e-7);
+  EXPECT_LT(chosen.report.max, 0.03 * chosen.report.largest_stress); // at yield, which a smooth surface rounds off
+  EXPECT_LT(chosen.report.rms, 0.01 * chosen.report.largest_stress);
+  options.smoothing = 1e-7; // as told
+  const PdFit told = fit_pd_nurbs(points, options);
+  EXPECT_EQ(told.report.smoothing, 1e-7);
+  EXPECT_FALSE(told.report.monotone);
+  EXPECT_LT(told.report.max, chosen.report.max);
+}
+
 TEST(PdNurbsFit, FillsBiaxialTestsOfEtfeWithItsLaw) {
   // tests along 1:1 and two other paths, 3 % above the law that fills; net 40 x 40
   std::vector<StressPoint> points;

@@ -73,6 +73,27 @@ TEST_F(Materials, TableFromTestDataIsTheFoilThatWasTested) {
   EXPECT_LT(relative_difference("thickness_min"), 1e-3);
 }
 
+TEST_F(Materials, TableWithoutAUniaxialTestIsAWarningOfCheckAndOfTheStage) {
+  std::string text = "strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa]\n";
+  for (const double e : {0.005, 0.01, 0.02}) { // strains 1:1 and 2:1 of a linear foil
+    for (const double other : {e, 0.5 * e}) {
+      const double c = 900 / (1 - 0.45 * 0.45);
+      text += fmt::format("{}, {}, {}, {}\n", 100 * e, 100 * other, c * (e + 0.45 * other), c * (other + 0.45 * e));
+    }
+  }
+  file("tests.csv", text);
+  inflated(std::string(table) + ", outside: linear", "1 kPa");
+  const Outcome check = pneuma("check w.yaml");
+  EXPECT_EQ(check.code, 0);
+  EXPECT_THAT(check.text, HasSubstr("w.yaml:2:41: warning: no test is near uniaxial stress"));
+  const Outcome run = pneuma("run w.yaml");
+  ASSERT_EQ(run.code, 0) << run.text;
+  const json of_table = summary("up");
+  EXPECT_THAT(of_table["warnings"].dump(), HasSubstr("table `foil`: no test is near uniaxial stress"));
+  // (1 / 2 + nu) / (1 + nu / 2) of small strains; nominal stress over stretch: squares of 2 %
+  EXPECT_NEAR(of_table["materials"]["foil"]["fit"]["least_stress_ratio"].get<double>(), 0.95 / 1.225, 0.02);
+}
+
 TEST_F(Materials, ChangedTestPointMakesTheStageStale) {
   file("tests.csv", points());
   inflated(table, "1 kPa");

@@ -112,6 +112,76 @@ TEST_F(MaterialBench, DataOfTheLawItselfHaveNoMisfit) {
   EXPECT_LT(number_after(run.text, "test b (1:1, 41 points): rms"), 1e-9) << run.text;
 }
 
+TEST_F(MaterialBench, TestInShearIsComparedInShear) {
+  // S12 = G 2 E12, along the axes of the foil or in a table of it
+  file("s.yaml", "foil: {law: elastic, E1: 900 MPa, E2: 800 MPa, nu12: 0.4, G12: 300 MPa}\n"
+                 "table: {law: le_nurbs, fit_to: foil, range: [-0.05, 0.2]}\n");
+  file("s.csv", "shear_strain [%]; shear_stress [MPa]\n1; 3,0\n2; 6,1\n4; 12,0\n");
+  const Outcome run = pneuma("material s.yaml --data s.csv --svg p.svg --csv c.csv");
+  ASSERT_EQ(run.code, 0) << run.text;
+  for (const char* name : {"\nfoil", "\ntable"}) {
+    const std::string text = run.text.substr(("\n" + run.text).find(name));
+    EXPECT_NEAR(number_after(text, "test s (shear, 3 points): rms"), 0.1 / std::sqrt(3), 1e-3) << text;
+    EXPECT_NEAR(number_after(text, "at a strain of"), 2, 1e-9) << text;
+  }
+  EXPECT_THAT(text_of("p.svg"), HasSubstr("shear"));
+  const std::string rows = text_of("c.csv");
+  EXPECT_THAT(rows.substr(rows.find("foil, shear, , loading")), HasSubstr(", 0.01, 3\n"));
+}
+
+TEST_F(MaterialBench, TestsAreComparedAtTheirTemperature) {
+  file("t.yaml", "foil: {law: elastic, E: 1000 MPa, nu: 0.45, temperature: [{at: 43 degC, E: 600 MPa}]}\n");
+  const auto at = [&](const char* name, double celsius, double modulus) {
+    std::string text = "strain_1 [%], stress_1 [MPa], temperature [degC]\n";
+    for (const double e : {0.01, 0.05})
+      text += fmt::format("{}, {}, {}\n", 100 * e, elastic(e) * modulus / 900, celsius);
+    file(name, text);
+  };
+  at("warm.csv", 33, 800);
+  at("cold.csv", 23, 1000);
+  at("hot.csv", 60, 500);
+  const Outcome one = pneuma("material t.yaml --ratios 1:0 --data warm.csv");
+  ASSERT_EQ(one.code, 0) << one.text;
+  EXPECT_THAT(one.text, HasSubstr("at 33 degC, as the tests"));
+  EXPECT_NEAR(number_after(one.text, "\n        10") / (elastic(0.1) / 0.9 * 0.8), 1, 5e-4); // four digits
+  EXPECT_LT(number_after(one.text, "test warm (uniaxial, 2 points, taken at 33 degC): rms"), 1e-9) << one.text;
+  const Outcome all = pneuma("material t.yaml --ratios 1:0 --data warm.csv --data cold.csv --data hot.csv");
+  ASSERT_EQ(all.code, 0) << all.text;
+  EXPECT_NEAR(number_after(all.text, "\n        10") / (elastic(0.1) / 0.9), 1, 5e-4);
+  for (const char* test : {"test warm", "test cold"}) {
+    EXPECT_LT(number_after(all.text.substr(all.text.find(test)), "rms"), 1e-9) << all.text;
+  }
+  EXPECT_THAT(all.text, HasSubstr("test hot: not compared, 60 degC is outside the temperatures of the material"));
+  const Outcome told = pneuma("material t.yaml --ratios 1:0 --data warm.csv --temperature '23 degC'");
+  EXPECT_NEAR(number_after(told.text, "max") / (elastic(0.05) / 0.9 * 0.2), 1, 5e-3) << told.text; // three digits
+  EXPECT_THAT(pneuma("material m.yaml foil --data warm.csv").text, HasSubstr("does not depend on the temperature"));
+}
+
+TEST_F(MaterialBench, OddTestDataAreComparedAndQuestioned) {
+  file("odd.csv", "strain_1 [%], stress_1 [Pa]\n1, 9\n2, 18\n");
+  const Outcome run = pneuma("material m.yaml foil --data odd.csv");
+  ASSERT_EQ(run.code, 0) << run.text;
+  EXPECT_THAT(pneuma("material m.yaml rubber --strain 10").text, HasSubstr("--strain: 10 is 1000 %; is `10 %` meant?"));
+  EXPECT_THAT(run.text, HasSubstr("odd.csv:2:1: warning: 9e-06 MPa at a strain of 1 % mean a modulus of"));
+  EXPECT_THAT(run.text, HasSubstr("test odd (uniaxial, 2 points)"));
+}
+
+TEST_F(MaterialBench, TableWithoutAUniaxialTestSaysSo) {
+  std::string data = "strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa]\n";
+  for (const double e : {0.01, 0.02, 0.05}) { // S2 / S1 of strains 1:1 and 2:1
+    for (const double other : {e, 0.5 * e}) {
+      const double c = 900 / (1 - 0.45 * 0.45);
+      data += fmt::format("{}, {}, {}, {}\n", 100 * e, 100 * other, c * (e + 0.45 * other), c * (other + 0.45 * e));
+    }
+  }
+  file("b.csv", data);
+  file("t.yaml", "table:\n  law: pd_nurbs\n  data: b.csv\n");
+  const Outcome run = pneuma("material t.yaml --ratios 1:1");
+  EXPECT_EQ(run.code, 0) << run.text;
+  EXPECT_THAT(run.text, HasSubstr("t.yaml:3:9: warning: no test is near uniaxial stress"));
+  EXPECT_THAT(run.text, HasSubstr("; no test near uniaxial stress\n"));
+}
+
 TEST_F(MaterialBench, MisfitSaysHowFarAndWhere) {
   // 1 MPa too much at 3 % alone
   file("u.csv", fmt::format("strain_1 [%], stress_1 [MPa]\n1, {}\n2, {}\n3, {}\n4, {}\n", elastic(0.01), elastic(0.02),
@@ -213,6 +283,7 @@ TEST_F(MaterialBench, WhatIsWrongIsSaidWithItsPlace) {
   fails("m.yaml --strain '5 mm'", "--strain");
   fails("m.yaml --steps 3", "from 10 to 100000");
   fails("m.yaml --ratios 2", "no ratio of stresses");
+  fails("m.yaml --ratios shear --true", "has no meaning in shear");
   fails("m.yaml --rate 0", "--rate: `0` is not positive");
   fails("m.yaml --ratios 1:0,1:1,2:1,1:2,3:1,1:3,4:1,1:4,5:1,1:5,6:1 --svg p.svg",
         "22 curves do not fit into one picture");
@@ -227,7 +298,13 @@ TEST_F(MaterialBench, WhatIsWrongIsSaidWithItsPlace) {
   fails("m.yaml --data many.csv", "no common ratio");
   file("few.csv", "strain_1 [%], stress_1 [MPa]\n1, 9\n2, 18\n");
   fails("m.yaml --data few.csv --fit 1", "name one of the 2");
-  fails("m.yaml foil --data few.csv --fit 1", "cannot carry so many branches");
+  fails("m.yaml foil --data few.csv --fit 1",
+        "has 2 points in tension up to its largest strain, fewer than the 3 that so many branches take");
+  file("line.csv", "strain_1 [%], stress_1 [MPa]\n1, 9\n2, 18\n3, 27\n4, 36\n");
+  fails("m.yaml foil --data line.csv --fit 1", "`line` does not yield");
+  file("zero.csv", "strain_1 [%], stress_1 [MPa]\n1, 0\n2, 0\n");
+  fails("m.yaml --data zero.csv", "zero.csv: no row with a weight has a stress");
+  fails("m.yaml -s 1", "unknown option `-s`");
   fails("m.yaml foil --data few.csv --true", "leave --data out");
   file("bad.yaml", "foil:\n  law: elastic\n  E: 900 MPa\n  nu: 0.7\n");
   fails("bad.yaml", "bad.yaml:4:7");

@@ -2,6 +2,8 @@
 // Materials of all laws: what is read, what is refused and where, what stage.yaml carries.
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include "tests/unit/pipeline/workflow/messages.h"
 
 namespace pneuma::pipeline::workflow {
@@ -94,14 +96,15 @@ TEST(Materials, OgdenTermOfTwoSignsIsAWarning) {
               HasSubstr("w.yaml:4:53: warning: `mu` -1 MPa and `alpha` 2 have different signs"));
 }
 
-// Two points with engineering strain 1 % and 10 %.
-const std::string tests = "strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa]\n1, 0, 9, 4\n10, 10, 22, 22\n";
+// Two uniaxial points with an engineering strain of 1 % and one of equal stresses at 10 %.
+const std::string tests =
+    "strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa]\n1, 0, 9, 0\n10, 10, 22, 22\n0, 1, 0, 9\n";
 
 TEST(Materials, TablesTakeTheirPointsFromTestData) {
   const Workflow workflow = read_good("law: pd_nurbs, data: tests/a.csv", {{"tests/a.csv", tests}});
   const auto law = std::get<TableLaw>(workflow.materials.at("etfe").law);
   EXPECT_EQ(law.kind, TableLaw::Kind::pd_nurbs);
-  ASSERT_EQ(law.points.size(), 2u);
+  ASSERT_EQ(law.points.size(), 3u);
   EXPECT_DOUBLE_EQ(law.points[1].strain_1, 0.105); // (1.1^2 - 1) / 2
   EXPECT_DOUBLE_EQ(law.points[1].stress_2, 20e6);  // 22 MPa / 1.1
   EXPECT_EQ(law.points[0].weight, 1);
@@ -116,9 +119,9 @@ TEST(Materials, TestDataMayBeGreenLagrangeAlready) {
   const Workflow workflow =
       read_good("law: pd_nurbs, measure: green_lagrange, data: [a.csv, a.csv]", {{"a.csv", tests}});
   const auto law = std::get<TableLaw>(workflow.materials.at("etfe").law);
-  ASSERT_EQ(law.points.size(), 4u); // the points of several files
-  EXPECT_EQ(law.points[3].strain_1, 0.1);
-  EXPECT_EQ(law.points[3].stress_1, 22e6);
+  ASSERT_EQ(law.points.size(), 6u); // the points of several files
+  EXPECT_EQ(law.points[4].strain_1, 0.1);
+  EXPECT_EQ(law.points[4].stress_1, 22e6);
 }
 
 TEST(Materials, TestDataLieBesideTheFileThatNamesThem) {
@@ -131,7 +134,7 @@ TEST(Materials, TestDataLieBesideTheFileThatNamesThem) {
                                                       "density: 1750 kg/m3}\n",
                                                       "materials: ../library/m.yaml\n")));
   EXPECT_EQ(lines_of(result.problems), "");
-  EXPECT_EQ(std::get<TableLaw>(result.workflow.materials.at("etfe").law).points.size(), 2u);
+  EXPECT_EQ(std::get<TableLaw>(result.workflow.materials.at("etfe").law).points.size(), 3u);
 }
 
 TEST(Materials, ShearOfATableAlongAxesHasDataOfItsOwn) {
@@ -219,7 +222,7 @@ TEST(Materials, StageFileReadsBackToTheSameBytes) {
       ("law: pd_nurbs, data: a.csv, net: [13, 13], degree: 4, range: [-0.07, 0.33], outside: linear, potential: off, "
        "smoothing: 1e-5, nu: 0.43"),
       "law: le_nurbs, data: [a.csv, a.csv], shear_data: s.csv, net: [13, 7]",
-      "law: le_nurbs, points: [[0.1, 0.1, 3e6, 3e6, 1]], shear_points: [[0.1, 1e6, 1]], net: [13, 7]"};
+      "law: le_nurbs, points: [[0.1, 0, 3e6, 0, 1], [0, 0.1, 0, 3e6, 1]], shear_points: [[0.1, 1e6, 1]], net: [13, 7]"};
   for (const std::string& keys : varied) {
     const Workflow workflow = read_good(keys, files);
     const Folder folder;
@@ -251,7 +254,7 @@ TEST(MaterialsFile, IsReadOnItsOwn) {
   EXPECT_EQ(some.names, (std::vector<std::string>{"b", "a", "c"}));
   ASSERT_EQ(some.materials.size(), 2u);
   EXPECT_EQ(some.materials[0].name, "b");
-  EXPECT_EQ(std::get<TableLaw>(some.materials[0].law).points.size(), 2u);
+  EXPECT_EQ(std::get<TableLaw>(some.materials[0].law).points.size(), 3u);
   EXPECT_THAT(lines_of(read_materials(file, {}).problems), HasSubstr("none.csv` cannot be read"));
   EXPECT_THAT(lines_of(read_materials(folder.path() / "none.yaml", {}).problems), HasSubstr("cannot be read"));
   EXPECT_THAT(lines_of(read_materials(folder.write("empty.yaml", ""), {}).problems),
@@ -460,13 +463,83 @@ TEST(BadTestDataOfAMaterial, AreToldInTheirFile) {
       {"uniaxial.csv", "uniaxial.csv:1:1: the column `strain_2` is missing"}};
   for (const auto& [name, message] : faults) {
     const Folder folder;
-    folder.write("d/hole.csv", replaced(tests, "9, 4", ", 4"));
-    folder.write("d/words.csv", replaced(tests, "9, 4", "9, four"));
+    folder.write("d/hole.csv", replaced(tests, "9, 0", ", 0"));
+    folder.write("d/words.csv", replaced(tests, "9, 0", "9, four"));
     folder.write("d/uniaxial.csv", "strain_1 [%], stress_1 [MPa]\n1, 9\n");
     const ReadResult result = read_workflow(
         folder.write("w.yaml", replaced(example, elastic, std::string("law: pd_nurbs, data: d/") + name)));
     EXPECT_THAT(lines_of(result.problems), HasSubstr(message));
   }
+}
+
+// Tests of a foil with stresses (1, ratio) and, where `both`, (ratio, 1).
+std::string tests_with(std::initializer_list<double> ratios, bool both = false) {
+  std::string text = "strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa]\n";
+  for (const double ratio : ratios) {
+    for (const double stress : {1.0, 10.0}) {
+      text += fmt::format("{}, {}, {}, {}\n", stress / 9, ratio * stress / 9, stress, ratio * stress);
+      if (both) text += fmt::format("{}, {}, {}, {}\n", ratio * stress / 9, stress / 9, ratio * stress, stress);
+    }
+  }
+  return text;
+}
+
+std::string told_of(const std::string& keys, const std::string& data) {
+  const Folder folder;
+  folder.write("a.csv", data);
+  folder.write("s.csv", "shear_strain [-], shear_stress [MPa]\n0.1, 3\n");
+  return lines_of(read_workflow(folder.write("w.yaml", replaced(example, elastic, keys))).problems);
+}
+
+TEST(TableOfTests, WithoutAUniaxialOneIsAWarningWhereTheTestsAreNamed) {
+  const std::string told = told_of("law: pd_nurbs, data: a.csv", tests_with({1, 0.5}));
+  EXPECT_THAT(told, HasSubstr("w.yaml:4:31: warning: no test is near uniaxial stress, the smaller stress is at least "
+                              "0.5 of the larger: a table ends at its uniaxial-stress curve"));
+  EXPECT_THAT(told, HasSubstr("add a uniaxial test, or `fit_to` a law that fills what tests leave open"));
+  EXPECT_EQ(told_of("law: pd_nurbs, data: a.csv", tests_with({1, 0.5, 0.05})), "");
+  EXPECT_EQ(told_of("law: pd_nurbs, data: a.csv", tests_with({1, -0.2})), ""); // beyond uniaxial stress
+  EXPECT_THAT(told_of("law: pd_nurbs, points: [[0.1, 0.1, 20e6, 20e6, 1], [0.1, 0.02, 20e6, 10e6, 1]]", ""),
+              HasSubstr("w.yaml:4:33: warning: no test is near uniaxial stress"));
+}
+
+TEST(TableOfTests, OfTheFirstPartOfTheStressAloneDoesNotCountAsUniaxial) {
+  // 0.1 of the largest stress; noise about zero stress has any ratio
+  EXPECT_THAT(told_of("law: pd_nurbs, data: a.csv", tests_with({1, 0.5}) + "0.11, -0.05, 1, 0\n"),
+              HasSubstr("no test is near uniaxial stress"));
+}
+
+TEST(TableOfTests, OfEqualStressesAloneIsRefused) {
+  EXPECT_THAT(told_of("law: pd_nurbs, data: a.csv", tests_with({1, 0.97})),
+              HasSubstr("w.yaml:4:31: all tests are near equal stresses, the smaller at least 0.97 of the larger"));
+}
+
+TEST(TableOfTests, IsFilledByALawWithoutAWord) {
+  const std::string filled =
+      "law: pd_nurbs, data: a.csv, fit_to: foil, range: [-0.05, 0.3], density: 1750 kg/m3}\n  foil: {law: elastic, E: "
+      "900 MPa, nu: 0.45";
+  EXPECT_EQ(told_of(filled, tests_with({1})), "");
+}
+
+TEST(TableOfTests, KnowsNoTemperatureAndSaysSoWhereTheTestsDo) {
+  const auto at = [](double first, double second) {
+    return fmt::format("strain_1 [%], strain_2 [%], stress_1 [MPa], stress_2 [MPa], temperature [degC]\n"
+                       "1, 0, 9, 0, {}\n1, 1, 16, 16, {}\n",
+                       first, second);
+  };
+  const std::string keys = "law: pd_nurbs, data: a.csv";
+  EXPECT_EQ(told_of(keys, at(21, 24)), "");
+  EXPECT_THAT(told_of(keys, at(20, 50)), HasSubstr("w.yaml:4:31: warning: the tests were taken at 20 to 50 degC"));
+  EXPECT_THAT(told_of(keys, at(50, 52)),
+              HasSubstr("w.yaml:4:31: warning: the tests were taken at 51 degC and the site has 23 degC"));
+}
+
+TEST(TableOfTests, AlongAxesNeedsAUniaxialOneAlongEach) {
+  const std::string keys = "law: le_nurbs, data: a.csv, shear_data: s.csv";
+  EXPECT_EQ(told_of(keys, tests_with({1, 0.5, 0}, true)), "");
+  EXPECT_THAT(told_of(keys, tests_with({1, 0.5, 0})),
+              HasSubstr("w.yaml:4:31: warning: no test is near uniaxial stress along axis 2, the smaller stress is at "
+                        "least 1 of the larger: "));
+  EXPECT_THAT(told_of(keys, tests_with({0.5, 0})), HasSubstr("along axis 2, where no stress is the larger: "));
 }
 
 } // namespace

@@ -153,6 +153,24 @@ TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
               HasSubstr("etfe.yaml:3:1: material `foil`: its table cannot be fitted: "));
 }
 
+TEST(Law, TableKnowsWhatItsTestsLeaveOpen) {
+  workflow::TableLaw law;
+  for (const double strain : {0.01, 0.02, 0.05}) {
+    // E 900 MPa, nu 0.45: S = E (e1 + nu e2) / (1 - nu2)
+    for (const double other : {strain, 0.05 * strain}) { // 1:1, and almost 2:1
+      const double c = 900e6 / (1 - 0.45 * 0.45);
+      law.points.push_back({strain, other, c * (strain + 0.45 * other), c * (other + 0.45 * strain), 1});
+    }
+  }
+  const MaterialLaw made = made_of(material_of(law));
+  ASSERT_TRUE(made.least_stress_ratio);
+  EXPECT_NEAR(*made.least_stress_ratio, (0.05 + 0.45) / (1 + 0.45 * 0.05), 1e-12); // of the closed form, rounding
+  EXPECT_THAT(made.missing_tests, HasSubstr("no test is near uniaxial stress, the smaller stress is at least 0.49"));
+  law.points.push_back({0.05, -0.45 * 0.05, 45e6, 0, 1});
+  EXPECT_EQ(made_of(material_of(law)).missing_tests, "");
+  EXPECT_EQ(made_of(material_of(law)).least_stress_ratio, 0);
+}
+
 TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
   workflow::TableLaw table;
   table.fit_to = "model";
@@ -183,6 +201,7 @@ TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
   for (const Material& material : library.materials) {
     library.known.at(material.name).tension_field = false; // uniaxial stress is at its border
     const MaterialLaw made = law_of(library.known, material.name, room);
+    EXPECT_TRUE(!made.fit || made.fit->monotone) << material.name;
     EXPECT_THAT(material.source, HasSubstr(":")) << material.name << ": a mark, then the source";
     EXPECT_EQ(material.density, 1750) << material.name;
     const double stress = uniaxial_stress(made.law, 0.005);
