@@ -16,8 +16,8 @@ namespace pneuma::stages::common {
 solver::assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to);
 
 // Follows the path of a model and writes everything that a stage of this kind writes: steps, history.csv, state.hdf
-// with its digest, summary.json. Returns 0; throws Error with exit code 5 where the path does not reach its end, after
-// the last good state is written and marked.
+// with its digest, summary.json; with --check nothing. Throws Error with exit code 5 where the path does not reach its
+// end, after the last good state is written and marked.
 struct Drive {
   solver::assembly::Model model;
   State state; // what the new state takes over: mesh, foils, supports, chambers
@@ -31,6 +31,6 @@ struct Drive {
   // what the stage itself has to say of the end state
   std::function<void(const State& end, const std::vector<FoilResults>& foils, Summary& summary)> report;
 };
-int run_equilibrium(const Start& start, Drive drive);
+void run_equilibrium(const Start& start, Drive drive);
 
 } // namespace pneuma::stages::common
