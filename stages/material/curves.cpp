@@ -59,7 +59,11 @@ Curve follow(const law::Law& material, const Ratio& ratio, const Options& option
   for (int i = static_cast<int>(curve.loading.size()) - 2; force(piece) > none; --i) {
     law::TestPiece next = piece;
     if (!pull(next, control, to(i), rate)) return curve;
-    if (force(next) <= none) {
+    if (std::abs(force(next)) <= none) { // back at its start: no way there by force where the stress does not rise
+      curve.unloading.push_back(next.state());
+      return curve;
+    }
+    if (force(next) < 0) {
       const double part = force(piece) / (force(piece) - force(next));
       const double duration = rate ? part * (next.state().time - piece.state().time) : 0;
       if (piece.advance(law::stresses({ratio.a, ratio.b, ratio.shear ? 1.0 : 0.0}), 0, duration))

@@ -60,6 +60,15 @@ TEST_F(MaterialBench, TableHoldsTheClosedFormAndTheWayBack) {
   EXPECT_THAT(pneuma("material m.yaml").text, HasSubstr("rubber"));
 }
 
+TEST_F(MaterialBench, TableOfALevelYieldStressGoesBackToItsStart) {
+  file("level.yaml", "table: {law: pd_nurbs, fit_to: level, range: [-0.1, 0.2]}\n"
+                     "level: {law: j2, E: 900 MPa, nu: 0.45, hardening: [{stress: 15 MPa, modulus: 0 MPa}]}\n");
+  // in steps that jump over the rise of the stress
+  const Outcome run = pneuma("material level.yaml table --strain '12 %' --steps 12 --ratios 1:1");
+  ASSERT_EQ(run.code, 0) << run.text;
+  EXPECT_EQ(number_after(run.text, "left, %"), 0);
+}
+
 TEST_F(MaterialBench, CsvHoldsEveryPointOfLoadingAndUnloading) {
   ASSERT_EQ(pneuma("material m.yaml rubber --strain 1 --steps 50 --ratios 1:0 --csv c.csv").code, 0);
   std::istringstream lines(text_of("c.csv"));
