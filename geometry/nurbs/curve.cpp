@@ -12,7 +12,7 @@ namespace pneuma::geometry::nurbs {
 template <int D>
 void check(const Curve<D>& curve) {
   check(curve.knots);
-  const std::size_t functions = static_cast<std::size_t>(curve.knots.functions());
+  const auto functions = static_cast<std::size_t>(curve.knots.functions());
   if (curve.points.size() != functions) {
     throw std::invalid_argument(
         fmt::format("the knots ask for {} control points, not {}", functions, curve.points.size()));

@@ -66,7 +66,7 @@ SurfaceJet<D> evaluate(const Surface<D>& surface, double u, double v) noexcept {
   Basis in_v;
   evaluate_basis(surface.u, u, 2, in_u);
   evaluate_basis(surface.v, v, 2, in_v);
-  const std::size_t columns = static_cast<std::size_t>(surface.v.functions());
+  const auto columns = static_cast<std::size_t>(surface.v.functions());
   SurfaceJet<D> s;
   if (surface.weights.empty()) {
     if constexpr (D == 1) {
@@ -157,7 +157,7 @@ std::optional<Vec2> parameters_at(const Surface<D>& surface, const Vec2& place) 
   }
   std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.distance < b.distance; });
   for (const Start& start : starts) {
-    if (const std::optional<Vec2> at = descend(surface, place, start.at, size)) return at;
+    if (std::optional<Vec2> at = descend(surface, place, start.at, size)) return at;
   }
   return std::nullopt;
 }

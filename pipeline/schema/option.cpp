@@ -315,7 +315,7 @@ public:
         check_name(entry.key, entry.mark, value);
         Value item = read(option.members.front(), entry.value, below(path, entry.key));
         item.key = entry.mark;
-        value.members.emplace_back(entry.key, std::move(item));
+        value.members.push_back({entry.key, std::move(item)});
       }
       break;
     case Type::group:
@@ -469,19 +469,19 @@ private:
         unread.mark = entry.value.mark;
         unread.key = entry.mark;
         unread.given = true;
-        value.members.emplace_back(entry.key, std::move(unread));
+        value.members.push_back({entry.key, std::move(unread)});
         continue;
       }
       Value read_value = read(*member, entry.value, below(path, entry.key));
       read_value.key = entry.mark;
-      value.members.emplace_back(entry.key, std::move(read_value));
+      value.members.push_back({entry.key, std::move(read_value)});
     }
     // a group that asks for something unavailable is not also told what else it lacks
     if (!has_unavailable) report_missing(option, node, path, value);
     for (const Option& member : option.members) {
       // an absent variant stays absent: its default names the group of one that is there
       if (!member.default_value.empty() && member.tag.empty() && value.find(member.name) == nullptr) {
-        value.members.emplace_back(member.name, read_default(member, path, value));
+        value.members.push_back({member.name, read_default(member, path, value)});
       }
     }
   }

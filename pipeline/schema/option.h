@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pipeline/schema/node.h"
@@ -88,6 +87,8 @@ Option table(std::string name, Option value, std::string what);
 Option either(std::string name, std::vector<Option> kinds, std::string what);
 Option variant(std::string name, std::string tag, std::vector<Option> groups, std::string what);
 
+struct Member;
+
 // What was read for an option: checked, in SI, defaults filled in.
 struct Value {
   Mark mark; // of a default: of the group it belongs to
@@ -99,10 +100,15 @@ struct Value {
   std::string text;                // text, name, choice; tag of a variant; otherwise what was written
   const Option* read_as = nullptr; // which of the kinds or groups it is
   std::vector<Value> items;
-  std::vector<std::pair<std::string, Value>> members;
+  std::vector<Member> members;
 
   const Value* find(const std::string& name) const;       // present, valid or not
   const Value* operator[](const std::string& name) const; // present and valid, otherwise nullptr
+};
+
+struct Member {
+  std::string name;
+  Value value;
 };
 
 // What a key of a group holds; `otherwise`, nothing or an empty text if it is absent or wrong.

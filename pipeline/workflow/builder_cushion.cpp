@@ -16,8 +16,6 @@ namespace pneuma::pipeline::workflow {
 using schema::Node;
 using schema::NodeKind;
 using schema::number_of;
-using schema::optional_integer;
-using schema::optional_number;
 using schema::suggestion;
 using schema::text_of;
 

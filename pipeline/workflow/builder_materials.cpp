@@ -75,7 +75,7 @@ void Builder::read_materials(const Value& root) {
     return;
   }
   materials_known_ = materials->valid;
-  if (!materials->valid) return;
+  if (!materials->valid || materials->read_as == nullptr) return;
   const auto read = [this](const Value& path) {
     read_materials_file((workflow_.file.parent_path() / path.text).lexically_normal(), path.mark);
   };

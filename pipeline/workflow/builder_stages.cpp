@@ -13,8 +13,6 @@
 
 namespace pneuma::pipeline::workflow {
 
-using schema::Node;
-using schema::NodeKind;
 using schema::number_of;
 using schema::optional_integer;
 using schema::optional_number;
@@ -120,12 +118,12 @@ std::map<std::string, double> Builder::pressures_of(const Value& stage, const st
     const std::string air = air_of(name);
     if (air == name && table->valid && table->find(name) == nullptr) {
       const auto sharing = std::find_if(table->members.begin(), table->members.end(),
-                                        [&](const auto& member) { return air_of(member.first) == name; });
+                                        [&](const auto& member) { return air_of(member.name) == name; });
       fail(table->mark,
            fmt::format("`gauge_pressure` says nothing about the chamber `{}`; {}", name,
                        sharing == table->members.end()
                            ? "0 Pa leaves it empty"
-                           : fmt::format("`{}` is connected to it and takes its pressure", sharing->first)));
+                           : fmt::format("`{}` is connected to it and takes its pressure", sharing->name)));
     }
     const Value *shared = (*table)[air], *own = (*table)[name];
     if (air == name || shared == nullptr || !connections_known_) continue;

@@ -503,7 +503,9 @@ Options table_law(bool along_axes) {
              {value("error", "ends the stage"), value("linear", "the stress goes on linearly, and that is reported")},
              "what happens where a strain leaves the data")
           .otherwise("error"),
-      flag("potential", "the stresses are derivatives of one stored energy").otherwise("on"),
+      flag("potential",
+           "the stresses are derivatives of one stored energy; off: fitted apart, at the price of more iterations")
+          .otherwise("on"),
       number("smoothing", "weight of bends in the surfaces against residuals; without it as little as the points need")
           .within({0, 1e6, "above 0, up to 1e6", false, true}),
       poissons_ratio("nu", "of the thickness, about which the points say nothing; 0.5: the volume stays")

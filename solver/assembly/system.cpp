@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,10 +18,10 @@ namespace pneuma::solver::assembly {
 
 namespace {
 
-// The symmetric part of a load stiffness: that is what the tangent takes (numerics 2).
-template <geometry::ElementType E>
-void symmetrize(geometry::PressureElement<E>& p) {
-  p.derivative = (0.5 * (p.derivative + p.derivative.transpose())).eval();
+// The symmetric part is what the tangent takes of a load stiffness (numerics 2), and of a law without a potential.
+template <int Size>
+void symmetrize(Eigen::Matrix<double, Size, Size>& matrix) {
+  matrix = (0.5 * (matrix + matrix.transpose())).eval();
 }
 
 } // namespace
@@ -183,6 +184,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
       const Eigen::Vector<double, size> change = derivative * move;
       add(e, change.data(), factor, drive);
     };
+    const bool symmetric = material::has_potential(foil.membrane.law);
     failed_[index] =
         element::membrane_forces(foil.membrane, configuration.positions, accepted_[index], new_[index], time_step_,
                                  with_tangent, foil.energy, [&](const element::ElementBatch& batch) {
@@ -190,8 +192,14 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
                                      add(batch.first + e, batch.force + e * size, 1.0, foil.internal);
                                      if (!with_tangent) continue;
                                      const double* tangent = batch.tangent + e * size * size;
-                                     linear::scatter_add(foil.scatter, batch.first + e, tangent, foil.tangent);
                                      add_moves(batch.first + e, Eigen::Map<const ElementMatrix>(tangent), -1.0);
+                                     if (symmetric) {
+                                       linear::scatter_add(foil.scatter, batch.first + e, tangent, foil.tangent);
+                                       continue;
+                                     }
+                                     ElementMatrix part = Eigen::Map<const ElementMatrix>(tangent);
+                                     symmetrize(part);
+                                     linear::scatter_add(foil.scatter, batch.first + e, part.data(), foil.tangent);
                                    }
                                  });
     if (failed_[index]) return;
@@ -205,7 +213,7 @@ void System::evaluate_foil(FoilEquations& foil, const Configuration& configurati
     };
     const auto subtract_load_stiffness = [&](Index e, double pressure) {
       add_moves(e, Eigen::Map<const ElementMatrix>(p.derivative.data()), pressure);
-      symmetrize<E>(p);
+      symmetrize(p.derivative);
       p.derivative *= -pressure;
       linear::scatter_add(foil.scatter, e, p.derivative.data(), foil.tangent);
     };
@@ -271,6 +279,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
   }
   place_edges(configuration);
   load_factor_ = configuration.load_factor;
+  is_new_ = false;
   base::parallel_chunks(threads_, foils_.size(),
                         [&](std::size_t i) { evaluate_foil(foils_[i], configuration, with_tangent); });
 
@@ -305,6 +314,7 @@ Balance System::evaluate(Configuration& configuration, bool with_tangent) {
     if (!std::isfinite(line.relative)) return {false, "a chamber's law is not finite"}; // std::max would drop a NaN
     balance.gas = std::max(balance.gas, std::abs(line.relative));
   }
+  is_new_ = true;
   return balance;
 }
 
@@ -422,8 +432,9 @@ std::string System::why_failed(std::size_t foil, const Configuration& configurat
 }
 
 void System::accept_history() {
+  if (!std::exchange(is_new_, false)) return; // a second time it would hide the step before
   before_.swap(accepted_);
-  accepted_ = new_; // which stays: accepted again it is the same
+  accepted_ = new_; // which stays: that of the last evaluation
   accepted_time_step_ = time_step_;
 }
 
@@ -434,6 +445,7 @@ Balance System::evaluate_accepted(Configuration& configuration, bool with_tangen
   };
   swap();
   Balance balance = evaluate(configuration, with_tangent);
+  is_new_ = false;
   swap();
   return balance;
 }
@@ -443,6 +455,7 @@ void System::restore(Memory memory) {
   accepted_ = std::move(memory.accepted);
   time_step_ = memory.time_step;
   accepted_time_step_ = memory.accepted_time_step;
+  is_new_ = false;
 }
 
 System::Flow System::flow() const {

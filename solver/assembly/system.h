@@ -91,7 +91,8 @@ public:
   // Material history. `evaluate` goes from the accepted one, in one step that takes this long, s.
   void set_time_step(double seconds) { time_step_ = seconds; }
   double time_step() const { return time_step_; }
-  // What the last evaluation left becomes the accepted history.
+  // What the last evaluation left becomes the accepted history; once, and only where it was possible and a step on from
+  // the accepted one.
   void accept_history();
   // Evaluates the accepted configuration once more as the step that led to it, from the history before it: the same
   // tangent, where a new step of no length would see a foil that has stopped yielding.
@@ -131,6 +132,7 @@ private:
   std::vector<double> base_volume_;  // per block, of those without equations
   // histories per foil: before the step that was accepted last, behind it, and behind the last evaluation
   std::vector<std::vector<double>> before_, accepted_, new_;
+  bool is_new_ = false;                                // new_ is not accepted yet
   double accepted_time_step_ = 0;                      // s
   std::vector<std::optional<element::Failed>> failed_; // per foil
 };

@@ -33,6 +33,27 @@ bool has_tension_field(const Law& law) {
       law);
 }
 
+bool has_potential(const Law& law) {
+  return std::visit(
+      []<Material M>(const M& m) {
+        const auto fitted_apart = [](const auto& table) {
+          if constexpr (requires { table.stress; }) {
+            return table.stress.has_value();
+          } else {
+            return table.first.has_value();
+          }
+        };
+        if constexpr (requires { *m.table; }) {
+          return !fitted_apart(*m.table);
+        } else if constexpr (requires { *m.law.table; }) {
+          return !fitted_apart(*m.law.table);
+        } else {
+          return true;
+        }
+      },
+      law);
+}
+
 bool is_rate_dependent(const Law& law) {
   return std::visit([]<Material M>(const M& m) { return flows_with_time(m); }, law);
 }

@@ -36,6 +36,10 @@ Relaxed relaxed(const Law& law, const Vec3& strain, const double* history);
 
 bool has_tension_field(const Law& law);
 
+// Whether its stress is the derivative of a potential, so that its tangent is symmetric: not of tables whose stresses
+// were fitted apart.
+bool has_potential(const Law& law);
+
 // Whether it flows with time: then it has an equivalent plastic strain.
 bool is_rate_dependent(const Law& law);
 

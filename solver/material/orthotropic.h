@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "solver/material/concept.h"
+#include "solver/material/st_venant_kirchhoff.h"
 
 namespace pneuma::solver::material {
 
@@ -41,10 +41,7 @@ struct Orthotropic {
   }
 
   Status evaluate(const Vec3& strain, const double*, double*, double, Response& response) const noexcept {
-    response.tangent = stiffness();
-    response.stress = response.tangent * strain;
-    response.energy = response.potential = 0.5 * response.stress.dot(strain);
-    return Status::ok;
+    return respond_linearly(stiffness(), strain, response);
   }
 
   // NaN where the law has no such thickness

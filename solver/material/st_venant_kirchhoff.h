@@ -7,6 +7,14 @@
 
 namespace pneuma::solver::material {
 
+// The answer of a law whose stiffness is the same at every strain.
+inline Status respond_linearly(const Mat3& stiffness, const Vec3& strain, Response& response) noexcept {
+  response.tangent = stiffness;
+  response.stress = response.tangent * strain;
+  response.energy = response.potential = 0.5 * response.stress.dot(strain);
+  return Status::ok;
+}
+
 // St. Venant-Kirchhoff, isotropic, plane stress: S = E/(1-nu^2) [E + nu ...] (Holzapfel 2000, eq. 6.151, with the
 // thickness stress condensed).
 struct StVenantKirchhoff {
@@ -23,10 +31,7 @@ struct StVenantKirchhoff {
   }
 
   Status evaluate(const Vec3& strain, const double*, double*, double, Response& response) const noexcept {
-    response.tangent = stiffness();
-    response.stress = response.tangent * strain;
-    response.energy = response.potential = 0.5 * response.stress.dot(strain);
-    return Status::ok;
+    return respond_linearly(stiffness(), strain, response);
   }
 
   // E33 = -nu/(1-nu) (E11 + E22) follows from S33 = 0; NaN where the law has no such thickness

@@ -332,6 +332,7 @@ private:
   void step_by_load() {
     double step = options_.first_step * (last_ && last_->load_factor < 0 ? -1 : 1);
     bool away = false;
+    bool turned = false;
     const double standing = way_value();
     for (int tries = 0; tries < 16; ++tries, step /= cut) {
       Configuration next = at_;
@@ -339,7 +340,10 @@ private:
       const Newton::Outcome outcome = newton_.solve(next, [&](const Iteration& i) {
         if (report_) report_(result_.steps + 1, i);
       });
-      if (!outcome.converged || options_.flow.excess(system_.flow()) > 1 || !objection_to(next).empty()) continue;
+      turned = outcome.converged && turned_over(system_, at_, next);
+      if (!outcome.converged || turned || options_.flow.excess(system_.flow()) > 1 || !objection_to(next).empty()) {
+        continue;
+      }
       if (!is_arc()) {
         const double now = value_of(held_quantity_at(next), system_, next);
         const bool forward = (now - start_) * (until() - start_) > 0;
@@ -372,8 +376,9 @@ private:
     }
     system_.evaluate_accepted(at_, true);
     result_.reason = fmt::format("no equilibrium found beyond load factor {:.6g}: {}", at_.load_factor,
-                                 away ? "the load moves the controlled quantity away from its goal"
-                                      : "the cushion has no stiffness, and no small part of the load gives it one");
+                                 away     ? "the load moves the controlled quantity away from its goal"
+                                 : turned ? "an element would be turned over"
+                                          : "the cushion has no stiffness, and no small part of the load gives it one");
   }
 
   Held held_quantity_at(const Configuration& next) const {

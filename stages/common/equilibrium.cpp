@@ -476,8 +476,8 @@ void add_load(const DrivenLoad& driven, assembly::Model& model) {
   if (!load.points.empty()) {
     model.zones.push_back({load.block, load.offset, load.points, pressure});
   } else if (load.pressure != 0) {
-    for (const std::size_t end : {0, 1})
-      model.face_pressure[static_cast<std::size_t>(load.block)][end] += pressure[end];
+    assembly::Ramp& face = model.face_pressure[static_cast<std::size_t>(load.block)];
+    for (std::size_t end = 0; end < 2; ++end) face[end] += pressure[end];
   }
   if (load.dead.empty()) return;
   const Eigen::Map<const VecX> dead(load.dead.data(), static_cast<Eigen::Index>(load.dead.size()));
@@ -485,7 +485,8 @@ void add_load(const DrivenLoad& driven, assembly::Model& model) {
   model.dead_to += driven.to * dead;
 }
 
-int run_equilibrium(const Start& start, Drive drive) {
+void run_equilibrium(const Start& start, Drive drive) {
+  if (start.arguments.check) return;
   const Workflow& workflow = start.workflow;
   drive.modelled.insert(drive.modelled.begin(), {"large deformation of membranes without bending stiffness",
                                                  "pressure that follows the foils, with its load stiffness"});
@@ -512,7 +513,6 @@ int run_equilibrium(const Start& start, Drive drive) {
                              "contact forces between foils", "dynamics", "flexibility of the frame"});
   solver::linear::use_one_blas_thread();
   Run(start, std::move(drive)).run();
-  return 0;
 }
 
 } // namespace pneuma::stages::common

@@ -25,8 +25,8 @@ struct DrivenLoad {
 void add_load(const DrivenLoad& driven, solver::assembly::Model& model);
 
 // Follows the path of a model and writes everything that a stage of this kind writes: steps, history.csv, state.hdf
-// with its digest, summary.json. Returns 0; throws Error with exit code 5 where the path does not reach its end, after
-// the last good state is written and marked.
+// with its digest, summary.json; with --check nothing. Throws Error with exit code 5 where the path does not reach its
+// end, after the last good state is written and marked.
 struct Drive {
   solver::assembly::Model model;
   State state;                   // what the new state takes over: mesh, foils, supports, chambers
@@ -41,6 +41,6 @@ struct Drive {
   // what the stage itself has to say of the end state
   std::function<void(const State& end, const std::vector<FoilResults>& foils, Summary& summary)> report;
 };
-int run_equilibrium(const Start& start, Drive drive);
+void run_equilibrium(const Start& start, Drive drive);
 
 } // namespace pneuma::stages::common

@@ -171,7 +171,8 @@ std::string text_of(const material::FitReport& fit) {
   text += fmt::format("; smoothing {:.0e}", fit.smoothing);
   if (fit.uncovered > 0) text += fmt::format("; {:.0f} % of the table holds no point", 100 * fit.uncovered);
   if (fit.integrability_defect > 0) {
-    text += fmt::format("; without a potential, integrability defect {:.2g}", fit.integrability_defect);
+    text += fmt::format("; without a potential, integrability defect {:.2g}: equilibrium takes more iterations",
+                        fit.integrability_defect);
   }
   return text;
 }

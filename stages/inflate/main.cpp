@@ -109,8 +109,8 @@ int run(int argc, char** argv) {
       report_against_target(start.state, end, foils, area, summary);
     };
   }
-  if (start.arguments.check) return 0;
-  return common::run_equilibrium(start, std::move(drive));
+  common::run_equilibrium(start, std::move(drive));
+  return 0;
 }
 
 } // namespace

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <string_view>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/schema/command_line.h"
 #include "pipeline/schema/spelling.h"
 #include "stages/common/law.h"
 #include "stages/material/fit.h"
@@ -226,11 +226,9 @@ private:
 };
 
 int run(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--help" || std::string_view(argv[i]) == "-h") {
-      std::puts(usage());
-      return 0;
-    }
+  if (pipeline::schema::asks_for_help(argc, argv)) {
+    std::puts(usage());
+    return 0;
   }
   Options options = parse(argc, argv);
   const workflow::MaterialsResult read = read_materials(options);

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/schema/command_line.h"
 #include "pipeline/schema/quantity.h"
-#include "pipeline/schema/spelling.h"
 
 namespace pneuma::stages::material {
 
@@ -18,7 +17,7 @@ namespace {
 
 using base::InputError;
 using pipeline::schema::parse_number;
-using pipeline::schema::suggestion;
+using pipeline::schema::Words;
 
 // A number in `unit` or, with a unit behind it, any quantity of its kind.
 double quantity(const std::string& option, const std::string& text, const std::string& unit) {
@@ -95,37 +94,22 @@ void set_angle(Options& options, const std::string& text) {
   options.angle = read.value;
 }
 
-struct Switch {
-  std::string name;
-  bool has_value;
-  std::function<void(Options&, const std::string&)> set;
-};
-
-const std::vector<Switch>& switches() {
-  static const std::vector<Switch> all = {
-      {"--strain", true, set_strain},
-      {"--steps", true, [](Options& o, const std::string& v) { o.steps = whole("--steps", v, 10, 100000); }},
-      {"--ratios", true, set_ratios},
-      {"--rate", true, set_rates},
-      {"--temperature", true, set_temperature},
-      {"--angle", true, set_angle},
-      {"--true", false, [](Options& o, const std::string&) { o.true_measures = true; }},
-      {"--data", true, [](Options& o, const std::string& v) { o.data.push_back(v); }},
-      {"--csv", true, [](Options& o, const std::string& v) { o.csv = v; }},
-      {"--svg", true, [](Options& o, const std::string& v) { o.svg = v; }},
-      {"--fit", true, [](Options& o, const std::string& v) { o.branches = whole("--fit", v, 1, 8); }},
-      {"--softening", false, [](Options& o, const std::string&) { o.softening = true; }},
+const std::vector<pipeline::schema::Switch<Options>>& switches() {
+  static const std::vector<pipeline::schema::Switch<Options>> all = {
+      {"--strain", 1, [](Options& o, const Words& v) { set_strain(o, v[0]); }},
+      {"--steps", 1, [](Options& o, const Words& v) { o.steps = whole("--steps", v[0], 10, 100000); }},
+      {"--ratios", 1, [](Options& o, const Words& v) { set_ratios(o, v[0]); }},
+      {"--rate", 1, [](Options& o, const Words& v) { set_rates(o, v[0]); }},
+      {"--temperature", 1, [](Options& o, const Words& v) { set_temperature(o, v[0]); }},
+      {"--angle", 1, [](Options& o, const Words& v) { set_angle(o, v[0]); }},
+      {"--true", 0, [](Options& o, const Words&) { o.true_measures = true; }},
+      {"--data", 1, [](Options& o, const Words& v) { o.data.emplace_back(v[0]); }},
+      {"--csv", 1, [](Options& o, const Words& v) { o.csv = v[0]; }},
+      {"--svg", 1, [](Options& o, const Words& v) { o.svg = v[0]; }},
+      {"--fit", 1, [](Options& o, const Words& v) { o.branches = whole("--fit", v[0], 1, 8); }},
+      {"--softening", 0, [](Options& o, const Words&) { o.softening = true; }},
   };
   return all;
-}
-
-const Switch& switch_called(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Switch& known : switches()) {
-    if (known.name == name) return known;
-    names.push_back(known.name);
-  }
-  throw InputError(fmt::format("unknown option `{}`{}\n{}", name, suggestion(name, names), usage()));
 }
 
 } // namespace
@@ -156,21 +140,13 @@ const char* usage() {
 Options parse(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!words[i].starts_with("-")) {
-      if (options.materials.empty()) {
-        options.materials = words[i];
-      } else {
-        options.names.push_back(words[i]);
-      }
-      continue;
+  pipeline::schema::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
+    if (options.materials.empty()) {
+      options.materials = word;
+    } else {
+      options.names.push_back(word);
     }
-    const Switch& found = switch_called(words[i]);
-    if (found.has_value && ++i == words.size()) {
-      throw InputError(fmt::format("{} needs a value\n{}", found.name, usage()));
-    }
-    found.set(options, words[i]);
-  }
+  });
   if (options.materials.empty()) throw InputError(fmt::format("no file of materials is given\n{}", usage()));
   if (!options.csv.empty() && std::find(options.data.begin(), options.data.end(), options.csv) != options.data.end()) {
     throw InputError(fmt::format("--csv: `{}` holds the test data", options.csv.string()));

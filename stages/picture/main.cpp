@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstdio>
-#include <string_view>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
+#include "pipeline/schema/command_line.h"
 #include "pipeline/state/state_file.h"
 #include "stages/picture/draw.h"
 
 namespace pneuma::stages::picture {
 
 int run(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--help") {
-      std::puts(usage());
-      return 0;
-    }
+  if (pipeline::schema::asks_for_help(argc, argv)) {
+    std::puts(usage());
+    return 0;
   }
   const Options options = parse(argc, argv);
   draw(pipeline::state::read_state(options.state), options);

@@ -3,14 +3,13 @@
 
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
-#include "pipeline/schema/spelling.h"
+#include "pipeline/schema/command_line.h"
 
 namespace pneuma::stages::picture {
 
@@ -18,6 +17,7 @@ namespace {
 
 using base::InputError;
 using pipeline::schema::suggestion;
+using pipeline::schema::Words;
 
 template <class Number>
 Number number(const std::string& option, const std::string& text) {
@@ -69,36 +69,19 @@ void set_view(Options& options, const std::string& text) {
       fmt::format("--view: '{}' is none of {}{}", text, pipeline::schema::joined(names), suggestion(text, names)));
 }
 
-using Values = std::vector<std::string>;
-
-struct Switch {
-  std::string name;
-  std::size_t count; // of values
-  std::function<void(Options&, const Values&)> set;
-};
-
-const std::vector<Switch>& switches() {
-  static const std::vector<Switch> all = {
-      {"--field", 1, [](Options& o, const Values& v) { o.field = v[0]; }},
-      {"--out", 1, [](Options& o, const Values& v) { o.out = v[0]; }},
-      {"--size", 1, [](Options& o, const Values& v) { set_size(o, v[0]); }},
-      {"--title", 1, [](Options& o, const Values& v) { o.title = v[0]; }},
-      {"--component", 1, [](Options& o, const Values& v) { set_component(o, v[0]); }},
-      {"--range", 2, [](Options& o, const Values& v) { set_range(o, v[0], v[1]); }},
-      {"--explode", 1, [](Options& o, const Values& v) { o.explode = number<double>("--explode", v[0]); }},
-      {"--view", 1, [](Options& o, const Values& v) { set_view(o, v[0]); }},
-      {"--warp", 1, [](Options& o, const Values& v) { o.warp = number<double>("--warp", v[0]); }},
+const std::vector<pipeline::schema::Switch<Options>>& switches() {
+  static const std::vector<pipeline::schema::Switch<Options>> all = {
+      {"--field", 1, [](Options& o, const Words& v) { o.field = v[0]; }},
+      {"--out", 1, [](Options& o, const Words& v) { o.out = v[0]; }},
+      {"--size", 1, [](Options& o, const Words& v) { set_size(o, v[0]); }},
+      {"--title", 1, [](Options& o, const Words& v) { o.title = v[0]; }},
+      {"--component", 1, [](Options& o, const Words& v) { set_component(o, v[0]); }},
+      {"--range", 2, [](Options& o, const Words& v) { set_range(o, v[0], v[1]); }},
+      {"--explode", 1, [](Options& o, const Words& v) { o.explode = number<double>("--explode", v[0]); }},
+      {"--view", 1, [](Options& o, const Words& v) { set_view(o, v[0]); }},
+      {"--warp", 1, [](Options& o, const Words& v) { o.warp = number<double>("--warp", v[0]); }},
   };
   return all;
-}
-
-const Switch& switch_called(const std::string& name) {
-  std::vector<std::string> names;
-  for (const Switch& known : switches()) {
-    if (known.name == name) return known;
-    names.push_back(known.name);
-  }
-  throw InputError(fmt::format("unknown option '{}'{}\n{}", name, suggestion(name, names), usage()));
 }
 
 } // namespace
@@ -118,22 +101,12 @@ const char* usage() {
 Options parse(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!words[i].starts_with("--")) {
-      if (!options.state.empty())
-        throw InputError(fmt::format("two states: {} and {}", options.state.string(), words[i]));
-      options.state = words[i];
-      continue;
+  pipeline::schema::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
+    if (!options.state.empty()) {
+      throw InputError(fmt::format("two states: {} and {}", options.state.string(), word));
     }
-    const Switch& found = switch_called(words[i]);
-    if (i + found.count >= words.size()) {
-      throw InputError(
-          fmt::format("{} needs {} value{}\n{}", found.name, found.count, found.count > 1 ? "s" : "", usage()));
-    }
-    const auto first = words.begin() + static_cast<std::ptrdiff_t>(i) + 1;
-    found.set(options, Values(first, first + static_cast<std::ptrdiff_t>(found.count)));
-    i += found.count;
-  }
+    options.state = word;
+  });
   if (options.state.empty()) throw InputError(fmt::format("no state is given\n{}", usage()));
   if (options.field.empty()) throw InputError(fmt::format("--field is missing\n{}", usage()));
   if (options.out.extension() != ".png") throw InputError(fmt::format("--out must name a .png file\n{}", usage()));

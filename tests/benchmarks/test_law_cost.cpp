@@ -122,7 +122,7 @@ TEST_P(LawCost, IsReportedAsRatiosToTheElasticLaw) {
     for (auto& [name, m] : laws) run(m);
   }
   EXPECT_TRUE(std::isfinite(sum));
-  const double points = static_cast<double>(membrane.reference.area.size());
+  const auto points = static_cast<double>(membrane.reference.area.size());
   std::printf("%d points an element\n", static_cast<int>(membrane.reference.points));
   for (const auto& [name, m] : laws) {
     std::printf("| %-30s | %5.0f ns a point | %4.2f |\n", name.c_str(), m.best / points * 1e9,

@@ -112,6 +112,26 @@ TEST(PathEnds, AnArcFromAFlatFoilEndsWithinItsFirstStep) {
   EXPECT_NEAR(by_move.height(), 0.005, 1e-11);
 }
 
+TEST(PathEnds, TheFirstStepFromAFlatFoilTurnsNoElementOver) {
+  assembly::Model model = flat_foil();
+  model.face_pressure = {{0, 100e6}, {0, 0}}; // a tenth of it blows the foil up to more than a hemisphere
+  assembly::System system(model, 1);
+  path::Newton newton(system, {});
+  assembly::Configuration at_once = tests::start_of(model);
+  at_once.load_factor = 0.1;
+  ASSERT_TRUE(newton.solve(at_once).converged);
+  EXPECT_TRUE(path::turned_over(system, tests::start_of(model), at_once));
+  path::ArcLengthPath arc;
+  arc.load_factor = 0.1;
+  const Followed f(model, arc);
+  ASSERT_TRUE(f.reached()) << f.path.reason;
+  assembly::Configuration before = tests::start_of(model);
+  for (const assembly::Configuration& state : f.states) {
+    EXPECT_FALSE(path::turned_over(f.system, before, state)) << state.load_factor;
+    before = state;
+  }
+}
+
 TEST(PathEnds, AVolumeThatTheFirstLoadStepWouldPassIsMet) {
   for (const int parts : {1, 4}) {
     const Followed f(flat_foil(), path::VolumePath{0, 1e-3}, parts);

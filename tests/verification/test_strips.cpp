@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -26,10 +26,11 @@ Mesh dome(ElementType element, double size) {
 
 const Plan square = Rectangle{4, 4};
 
+// Of the processor, s: what else the machine does hardly counts.
 double seconds_of(auto&& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 TEST(GeodesicOnAFineMesh, OverACoarseCopyHasTheExactLengthOfTheFineTriangles) {

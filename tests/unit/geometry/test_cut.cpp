@@ -12,6 +12,7 @@
 #include "geometry/rim.h"
 #include "geometry/strips/cut.h"
 #include "geometry/surface.h"
+#include "tests/unit/message_of.h"
 
 namespace {
 
@@ -19,6 +20,7 @@ using namespace pneuma::geometry;
 using namespace pneuma::geometry::meshing;
 using namespace pneuma::geometry::strips;
 using pneuma::base::GeometryError;
+using pneuma::tests::message_of;
 using testing::HasSubstr;
 
 const Plan rectangle = Rectangle{6, 4};
@@ -123,15 +125,6 @@ double length_of(const Mesh& mesh, const std::vector<Index>& nodes) {
         (mesh.nodes[static_cast<std::size_t>(nodes[k + 1])] - mesh.nodes[static_cast<std::size_t>(nodes[k])]).norm();
   }
   return length;
-}
-
-std::string refusal(auto&& call) {
-  try {
-    call();
-  } catch (const GeometryError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
 }
 
 // What holds for every mesh of strips.
@@ -371,14 +364,14 @@ protected:
 };
 
 TEST_F(Refusal, OfTooManyStripsSaysWhereAndWhatWouldDo) {
-  const std::string message = refusal([&] { cushion.cut_along({at(0), at(0.5), at(1)}, {}, 0.4); });
+  const std::string message = message_of<GeometryError>([&] { cushion.cut_along({at(0), at(0.5), at(1)}, {}, 0.4); });
   EXPECT_THAT(message, HasSubstr("foil `upper`: a strip is 0.5 m wide at the rim behind (0"));
   EXPECT_THAT(message, HasSubstr("at most 0.333 m"));
 }
 
 TEST_F(Refusal, OfLinesThatComeTogetherInTheMiddle) {
   const std::vector<Vec2> bow = {{1, -2}, {0.3, 0}, {1, 2}};
-  const std::string message = refusal([&] {
+  const std::string message = message_of<GeometryError>([&] {
     cushion.cut_along({at(0), given_line(cushion.surfaces[0], bow)}, {}, 0.3);
   });
   EXPECT_THAT(message, HasSubstr("foil `upper`: lines 1 and 2 come as near as 0.3"));
@@ -386,7 +379,7 @@ TEST_F(Refusal, OfLinesThatComeTogetherInTheMiddle) {
 
 TEST_F(Refusal, OfLinesThatCross) {
   const std::vector<Vec2> across = {{-1, -2}, {1, 2}};
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(message_of<GeometryError>([&] {
                 cushion.cut_along({at(0), given_line(cushion.surfaces[0], across)}, {}, 0.3);
               }),
               HasSubstr("lines 1 and 2 cross or touch near (0, 0)"));
@@ -394,7 +387,7 @@ TEST_F(Refusal, OfLinesThatCross) {
 
 TEST_F(Refusal, OfLinesThatEndAtOnePlace) {
   const std::vector<Vec2> fan = {{0, -2}, {2, 2}};
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(message_of<GeometryError>([&] {
                 cushion.cut_along({at(0), given_line(cushion.surfaces[0], fan)}, {}, 0.3);
               }),
               HasSubstr("end at (0, -2)"));
@@ -402,18 +395,20 @@ TEST_F(Refusal, OfLinesThatEndAtOnePlace) {
 
 TEST_F(Refusal, OfALineThatFollowsTheRim) {
   const std::vector<Vec2> beside = {{-2, -2}, {-1.8, -1.9}, {1.8, -1.9}, {2, -2}};
-  EXPECT_THAT(refusal([&] { cushion.cut_along({given_line(cushion.surfaces[0], beside)}, {}, 0.3); }),
+  EXPECT_THAT(message_of<GeometryError>([&] { cushion.cut_along({given_line(cushion.surfaces[0], beside)}, {}, 0.3); }),
               HasSubstr("to the rim at (-"));
 }
 
 TEST_F(Refusal, OfALineThatIsNotOnTheRim) {
   CuttingLine line = at(0);
   line.plan.front().y() += 0.5;
-  EXPECT_THAT(refusal([&] { cushion.cut_along({line}, {}, 0.3); }), HasSubstr("line 1 ends at (0, -1.5)"));
+  EXPECT_THAT(message_of<GeometryError>([&] { cushion.cut_along({line}, {}, 0.3); }),
+              HasSubstr("line 1 ends at (0, -1.5)"));
 }
 
 TEST_F(Refusal, OfAMeshSizeThatIsNone) {
-  EXPECT_THAT(refusal([&] { cushion.cut_along({}, {}, -1); }), HasSubstr("must be positive, not -1 m"));
+  EXPECT_THAT(message_of<GeometryError>([&] { cushion.cut_along({}, {}, -1); }),
+              HasSubstr("must be positive, not -1 m"));
 }
 
 } // namespace

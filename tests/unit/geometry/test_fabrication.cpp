@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -10,12 +9,14 @@
 #include "geometry/base/errors.h"
 #include "geometry/fabrication/fabrication.h"
 #include "geometry/polygon.h"
+#include "tests/unit/message_of.h"
 
 namespace {
 
 using namespace pneuma::geometry;
 using namespace pneuma::geometry::fabrication;
 using pneuma::base::GeometryError;
+using pneuma::tests::message_of;
 using std::numbers::pi;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -63,15 +64,6 @@ double distance_to(const std::vector<Vec2>& ring, const Vec2& point) {
     distance = std::min(distance, (ring[i] + along * side - point).norm());
   }
   return distance;
-}
-
-std::string refusal(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const GeometryError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
 }
 
 TEST(CutStrip, OfARectangleIsARectangleWithTheAllowanceOfEachSide) {
@@ -218,7 +210,7 @@ TEST(CutStrip, RefusesAllowancesThatOverlapWithThePlace) {
   const FlatStrip hook = {
       "U7", {clamp("rim", {{0, 0}, {1, 0}, {1, 1}, {0.52, 1}, {0.52, 0.2}, {0.48, 0.2}, {0.48, 1}, {0, 1}, {0, 0}})}};
   EXPECT_NO_THROW(cut_strip(hook, {0, 0.019, 0}));
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(message_of<GeometryError>([&] {
                 cut_strip(hook, {0, 0.03, 0});
               }),
               AllOf(HasSubstr("strip U7: the cut outline crosses itself"), HasSubstr("(0.5")));
@@ -227,11 +219,11 @@ TEST(CutStrip, RefusesAllowancesThatOverlapWithThePlace) {
 TEST(CutStrip, RefusesAnOpenOrCrossedNetOutline) {
   FlatStrip strip = rectangle(4, 1);
   strip.sides[1].points.back() = Vec2(4, 0.9);
-  EXPECT_EQ(refusal([&] { cut_strip(strip, {}); }),
+  EXPECT_EQ(message_of<GeometryError>([&] { cut_strip(strip, {}); }),
             "strip U1: the outline is open at (4.0000 m, 0.9000 m) of the flat strip");
   strip = rectangle(4, 1);
   strip.sides[1].points = {{4, 0}, {4, -0.5}, {2, 0.5}, {4, 1}};
-  EXPECT_THAT(refusal([&] { cut_strip(strip, {}); }), HasSubstr("the net outline crosses itself"));
+  EXPECT_THAT(message_of<GeometryError>([&] { cut_strip(strip, {}); }), HasSubstr("the net outline crosses itself"));
 }
 
 // a wavy seam as the strips on both sides of it see it, one of them a little shorter
@@ -335,7 +327,7 @@ TEST(Nest, TakesAStripThatFitsExactly) {
 
 TEST(Nest, RefusesWideStripsWithTheirWidthsAndTheRollThatWouldDo) {
   const std::vector<CutStrip> strips = rectangles({{3, 1.6}, {5, 0.8}, {4, 1.7}});
-  EXPECT_EQ(refusal([&] { nest(strips, names, 1.55, 0.02, 0.01); }),
+  EXPECT_EQ(message_of<GeometryError>([&] { nest(strips, names, 1.55, 0.02, 0.01); }),
             "too wide for a roll of 1.550 m with 1.510 m inside its selvedges: U1 (1.620 m), U3 (1.720 m); a roll of "
             "1.760 m would do, or more strips");
 }

@@ -6,6 +6,7 @@
 #include "geometry/base/errors.h"
 #include "geometry/rim.h"
 #include "geometry/strips/lines.h"
+#include "tests/unit/message_of.h"
 
 namespace {
 
@@ -13,6 +14,7 @@ using namespace pneuma::geometry;
 using namespace pneuma::geometry::meshing;
 using namespace pneuma::geometry::strips;
 using pneuma::base::GeometryError;
+using pneuma::tests::message_of;
 using testing::HasSubstr;
 
 strips::Surface dome(const Plan& plan, double sag, double size, ElementType element = ElementType::T3) {
@@ -22,15 +24,6 @@ strips::Surface dome(const Plan& plan, double sag, double size, ElementType elem
 
 double position(const Plan& plan, double x, double y) {
   return rim_position(plan, {x, y});
-}
-
-std::string refusal(auto&& call) {
-  try {
-    call();
-  } catch (const GeometryError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
 }
 
 const Plan square = Rectangle{4, 4};
@@ -97,22 +90,27 @@ TEST(GeodesicLine, MayEndAtOrVeryNearAVertex) {
 
 TEST(GeodesicLine, AlongTheRimIsRefused) {
   const strips::Surface surface = dome(square, 0.4, 0.25);
-  EXPECT_THAT(refusal([&] { geodesic_line(surface, 0.5, 3.5); }), HasSubstr("runs along the rim at ("));
-  EXPECT_THAT(refusal([&] { geodesic_line(surface, 0.5, 0.6); }), HasSubstr("closer than an element"));
+  EXPECT_THAT(message_of<GeometryError>([&] { geodesic_line(surface, 0.5, 3.5); }),
+              HasSubstr("runs along the rim at ("));
+  EXPECT_THAT(message_of<GeometryError>([&] { geodesic_line(surface, 0.5, 0.6); }),
+              HasSubstr("closer than an element"));
 }
 
 TEST(StraightLine, AcrossTheOutsideOfAnInnerCornerIsRefused) {
   const Polygon angle{{{-3, -2}, {3, -2}, {3, 0}, {0, 0}, {0, 2}, {-3, 2}}};
   const strips::Surface surface = dome(angle, 0.4, 0.3);
-  EXPECT_THAT(refusal([&] { straight_line(surface, position(angle, -1, 2), position(angle, 3, -1)); }),
-              HasSubstr("leaves the plan at (0."));
-  EXPECT_THAT(refusal([&] { geodesic_line(surface, position(angle, -0.1, 2), position(angle, 3, -0.1)); }),
-              HasSubstr("runs along the rim at ("));
+  EXPECT_THAT(
+      message_of<GeometryError>([&] { straight_line(surface, position(angle, -1, 2), position(angle, 3, -1)); }),
+      HasSubstr("leaves the plan at (0."));
+  EXPECT_THAT(
+      message_of<GeometryError>([&] { geodesic_line(surface, position(angle, -0.1, 2), position(angle, 3, -0.1)); }),
+      HasSubstr("runs along the rim at ("));
 }
 
 TEST(StraightLine, AlongTheRimIsRefused) {
   const strips::Surface surface = dome(square, 0.4, 0.25);
-  EXPECT_THAT(refusal([&] { straight_line(surface, 0.5, 3.5); }), HasSubstr("runs along the rim at ("));
+  EXPECT_THAT(message_of<GeometryError>([&] { straight_line(surface, 0.5, 3.5); }),
+              HasSubstr("runs along the rim at ("));
 }
 
 TEST(GivenLine, IsPutOnTheRimAndKeptInside) {
@@ -128,18 +126,20 @@ TEST(GivenLine, IsPutOnTheRimAndKeptInside) {
 
 TEST(GivenLine, ThatDoesNotReachTheRimIsRefusedWithThePlaceThatWouldDo) {
   const strips::Surface surface = dome(square, 0.4, 0.25);
-  const std::string message = refusal([&] { given_line(surface, std::vector<Vec2>{{-1, -1.5}, {-1, 2}}); });
+  const std::string message = message_of<GeometryError>([&] {
+    given_line(surface, std::vector<Vec2>{{-1, -1.5}, {-1, 2}});
+  });
   EXPECT_THAT(message, HasSubstr("(-1, -1.5)"));
   EXPECT_THAT(message, HasSubstr("end it at (-1, -2)"));
 }
 
 TEST(GivenLine, ThatLeavesThePlanOrCrossesItselfIsRefusedWithThePlace) {
   const strips::Surface surface = dome(square, 0.4, 0.25);
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(message_of<GeometryError>([&] {
                 given_line(surface, std::vector<Vec2>{{-1, -2}, {-3, 0}, {-1, 2}});
               }),
               HasSubstr("leaves the plan at (-2"));
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(message_of<GeometryError>([&] {
                 given_line(surface, std::vector<Vec2>{{-1, -2}, {1, 1}, {1, 0}, {-1.5, 0}, {-1, 2}});
               }),
               HasSubstr("crosses itself near ("));
@@ -158,7 +158,8 @@ TEST(Crossing, FindsTheLinesAndThePlace) {
 TEST(Prepare, RefusesARimOutOfThePlane) {
   Mesh mesh = domes::cushion(square, {ElementType::T3, 0.5, std::nullopt}, 0.4);
   for (Vec3& x : mesh.nodes) x.z() += 0.1 * x.x();
-  EXPECT_THAT(refusal([&] { prepare(square, mesh, mesh.blocks[0], mesh.nodes); }), HasSubstr("leaves the plane z = 0"));
+  EXPECT_THAT(message_of<GeometryError>([&] { prepare(square, mesh, mesh.blocks[0], mesh.nodes); }),
+              HasSubstr("leaves the plane z = 0"));
 }
 
 } // namespace

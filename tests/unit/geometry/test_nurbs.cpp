@@ -136,7 +136,7 @@ TEST(Curve, OneDegreeMoreGivesTheSameCurve) {
     Vec3 weighted = Vec3::Zero();
     for (const auto& [k, part] : {std::pair{i - 1, i / 3.0}, {i, 1 - i / 3.0}}) {
       if (part == 0) continue;
-      const std::size_t n = static_cast<std::size_t>(k);
+      const auto n = static_cast<std::size_t>(k);
       weighted += part * quarter.weights[n] * Vec3(quarter.points[n][0], quarter.points[n][1], 1);
     }
     cubic.points.push_back(weighted.head<2>() / weighted[2]);

@@ -7,20 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "geometry/nurbs/fit.h"
+#include "tests/unit/message_of.h"
 
 namespace pneuma::tests {
 namespace {
 
 using namespace geometry::nurbs;
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 std::vector<CurveObservation> sampled(double (*f)(double), int count, double first, double last) {
   std::vector<CurveObservation> observations;
@@ -97,8 +89,10 @@ TEST(CurveFit, SmoothingCalmsNoise) {
   for (int k = 0; k < 2; ++k) {
     const Curve<1> curve = fit(uniform(3, 40, 0, 1), observations, {.smoothing = k == 0 ? 1e-7 : 20}).curve;
     errors[k] = 0;
-    for (double u = 0; u <= 1; u += 0.01)
+    for (int i = 0; i <= 100; ++i) {
+      const double u = 0.01 * i;
       errors[k] = std::max(errors[k], std::abs(evaluate(curve, u).value[0] - u * u));
+    }
     slopes[k] = least_slope(curve).least;
   }
   EXPECT_LT(errors[1], errors[0] / 2);

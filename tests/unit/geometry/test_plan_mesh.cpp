@@ -14,6 +14,7 @@
 #include "geometry/meshing/plan_mesh.h"
 #include "geometry/quadrature.h"
 #include "geometry/shape_functions.h"
+#include "tests/unit/message_of.h"
 
 namespace {
 
@@ -400,12 +401,7 @@ TEST(UnstructuredMesh, OfAPolygonMayHaveStraightCornersAndNarrowArms) {
 
 template <class Error>
 std::string message_of(const Plan& plan, const MeshOptions& options) {
-  try {
-    mesh_plan(plan, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return pneuma::tests::message_of<Error>([&] { mesh_plan(plan, options); });
 }
 
 TEST(PlanMesh, RefusesBadOptionsAndSaysWhatIsAllowed) {

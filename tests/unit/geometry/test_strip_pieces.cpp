@@ -14,11 +14,13 @@
 #include "geometry/polygon.h"
 #include "geometry/strips/sides.h"
 #include "geometry/strips/strip_surface.h"
+#include "tests/unit/message_of.h"
 
 namespace {
 
 using namespace pneuma::geometry;
 using pneuma::base::GeometryError;
+using pneuma::tests::message_of;
 using testing::HasSubstr;
 
 constexpr std::array all_elements = {ElementType::T3, ElementType::T6, ElementType::Q4, ElementType::Q9};
@@ -61,15 +63,6 @@ struct Sheet {
     return side.edge >= 0 ? mesh.edges[at(side.edge)].name : "?";
   }
 };
-
-std::string refusal(auto&& call) {
-  try {
-    call();
-  } catch (const GeometryError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
 
 TEST(StripSides, RunAroundEachStripThroughAllItsNodes) {
   const std::vector<std::set<std::string>> names = {
@@ -119,18 +112,18 @@ TEST(StripSides, OfAStripThatIsNoneAreRefused) {
   const auto sides = [&](Index strip) {
     strips::sides_of(sheet.mesh, sheet.block(), sheet.strip_of_element, strip, sheet.seams);
   };
-  EXPECT_THAT(refusal([&] { sides(3); }), HasSubstr("strip 4 of"));
+  EXPECT_THAT(message_of<GeometryError>([&] { sides(3); }), HasSubstr("strip 4 of"));
   for (Index e = 0; e < sheet.mesh.element_count(sheet.block()); ++e) {
     const Vec3 centre = centre_of(sheet.mesh, e);
     sheet.strip_of_element[at(e)] = centre.head<2>().cwiseAbs().maxCoeff() < 0.6 ? 1 : 0; // a hole in strip 1
   }
-  EXPECT_THAT(refusal([&] { sides(0); }), HasSubstr("strip 1 of"));
-  EXPECT_THAT(refusal([&] { sides(0); }), HasSubstr("has a hole or falls into parts"));
+  EXPECT_THAT(message_of<GeometryError>([&] { sides(0); }), HasSubstr("strip 1 of"));
+  EXPECT_THAT(message_of<GeometryError>([&] { sides(0); }), HasSubstr("has a hole or falls into parts"));
   for (Index e = 0; e < sheet.mesh.element_count(sheet.block()); ++e) {
     const Vec3 centre = centre_of(sheet.mesh, e);
     sheet.strip_of_element[at(e)] = centre.x() * centre.y() > 0 ? 0 : 1; // meets itself in the middle
   }
-  EXPECT_THAT(refusal([&] { sides(0); }), HasSubstr("touches itself at (0, 0, 0) m"));
+  EXPECT_THAT(message_of<GeometryError>([&] { sides(0); }), HasSubstr("touches itself at (0, 0, 0) m"));
 }
 
 TEST(StripSurface, HasTheStripsAreaAndEachNodeOnce) {
@@ -210,7 +203,7 @@ TEST(Conformal, KeepsTheAreaAndTheOrientationOfADome) {
 TEST(Conformal, OfAClosedSurfaceIsRefused) {
   const Triangulation tetrahedron = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                      {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-  EXPECT_THAT(refusal([&] { flattening::conformal(tetrahedron); }), HasSubstr("without a boundary"));
+  EXPECT_THAT(message_of<GeometryError>([&] { flattening::conformal(tetrahedron); }), HasSubstr("without a boundary"));
 }
 
 TEST(LaidOver, FindsTheMoveAndTurnAndDoesNotMirror) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -151,15 +152,15 @@ struct Solved {
       : system(std::move(model), threads), newton(system, {}), at(start_of(system.model())) {
     run(parts);
   }
-  Solved(solver::assembly::Model model, const solver::assembly::Configuration& from, int parts = 1)
-      : system(std::move(model), 1), newton(system, {}), at(from) {
+  Solved(solver::assembly::Model model, solver::assembly::Configuration from, int parts = 1)
+      : system(std::move(model), 1), newton(system, {}), at(std::move(from)) {
     at.load_factor = 0;
     run(parts);
   }
   // By Newton alone, from there with the whole load: foils may fold over on the way.
-  Solved(solver::assembly::Model model, const solver::assembly::Configuration& from,
+  Solved(solver::assembly::Model model, solver::assembly::Configuration from,
          const solver::path::NewtonOptions& options)
-      : system(std::move(model), 1), newton(system, options), at(from) {
+      : system(std::move(model), 1), newton(system, options), at(std::move(from)) {
     at.load_factor = 1;
     const solver::path::Newton::Outcome outcome =
         newton.solve(at, [](const solver::path::Iteration& i) { tell(1, i); });

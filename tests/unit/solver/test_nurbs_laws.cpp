@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "solver/material/nurbs_fit.h"
+#include "tests/unit/message_of.h"
 #include "tests/unit/solver/laws.h"
 
 namespace pneuma::tests {
@@ -28,15 +29,6 @@ NurbsOptions net(int points, int degree = 3, StrainRange range = wide) {
 }
 
 const PdNurbs table_of_rubber{fit_pd_nurbs(Law(neo_hooke), net(25)).table};
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 // Largest difference of stress from a law's at places between those of the fit, over the stress there and `floor`.
 double difference(const PdNurbs& table, const auto& law, StrainRange range, double floor) {

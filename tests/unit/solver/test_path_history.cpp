@@ -57,6 +57,31 @@ TEST(PathHistory, AcceptedTwiceIsAcceptedOnce) {
   EXPECT_EQ(w.system.flow().growth, 0);
 }
 
+TEST(PathHistory, AcceptedTwiceTheLastStepIsStillRepeatedFromTheHistoryBeforeIt) {
+  Walked w(foil(8e3, false));
+  ASSERT_EQ(path::follow_load(w.system, w.newton, w.at, {}, {}).end, path::PathEnd::reached);
+  const std::vector<double> tangent = w.system.foils()[0].tangent;
+  w.system.accept_history();
+  w.system.evaluate_accepted(w.at, true);
+  EXPECT_EQ(w.system.foils()[0].tangent, tangent);
+  w.system.accept_history(); // of that repetition
+  w.system.evaluate_accepted(w.at, true);
+  EXPECT_EQ(w.system.foils()[0].tangent, tangent);
+  w.system.evaluate(w.at, true); // a step of no length: it yields no more
+  EXPECT_NE(w.system.foils()[0].tangent, tangent);
+}
+
+TEST(PathHistory, WhatCannotBeIsNotAccepted) {
+  Walked w(foil(8e3, false));
+  ASSERT_EQ(path::follow_load(w.system, w.newton, w.at, {}, {}).end, path::PathEnd::reached);
+  const std::vector<double> accepted = w.history();
+  assembly::Configuration flown = w.at;
+  for (base::Vec3& x : flown.positions) x *= 1e200;
+  ASSERT_FALSE(w.system.evaluate(flown, false).possible);
+  w.system.accept_history();
+  EXPECT_EQ(w.history(), accepted);
+}
+
 TEST(PathHistory, StepsThatAreCutLeaveNoTrace) {
   // the path that objections cut is the one that steps to where they let it
   Walked cut(foil(8e3, false));

@@ -457,4 +457,52 @@ TEST(SystemOfTables, SaysWhereAndBetweenWhichStrainsATableEnds) {
   EXPECT_NE(balance.reason.find("its table lies within -0.01 and 0.02"), std::string::npos) << balance.reason;
 }
 
+// A foil over a base whose stresses c (E1 + nu E2 + 10 E1 E2) have no potential; with one, the nearest that has.
+assembly::Model table_of_stresses(ElementType element, double pressure, bool potential) {
+  constexpr double c = 900e6, nu = 0.45, defect = 10;
+  std::vector<material::StressPoint> points;
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 20; ++j) {
+      const double e1 = -0.1 + 0.025 * i;
+      const double e2 = -0.1 + 0.025 * j;
+      points.push_back({e1, e2, c * (e1 + nu * e2 + defect * e1 * e2), c * (e2 + nu * e1 + defect * e1 * e2)});
+    }
+  }
+  material::NurbsOptions options;
+  options.net = {8, 8};
+  options.potential = potential;
+  Cushion cushion = small(element);
+  cushion.prestress = 0;
+  cushion.heights = {0.12};
+  cushion.base = true;
+  assembly::Model model = model_of(cushion, 0);
+  model.chambers[0].gas = chamber::Regulated{0, pressure};
+  model.foils[0]->law = material::PdNurbs{material::fit_pd_nurbs(points, options).table};
+  return model;
+}
+
+TEST_P(SystemOfEveryElement, WithoutAPotentialTheTangentIsTheSymmetricPartOfTheDerivative) {
+  const assembly::Model model = table_of_stresses(GetParam(), 50e3, false);
+  assembly::System system(model, 1);
+  assembly::Configuration at = start_of(model, 1);
+  for (Vec3& x : at.positions) x += Vec3(0.05 * x.x(), 0.01 * x.y(), 0.2 * x.z());
+  system.evaluate(at, true);
+  const MatX tangent = dense(system.foils()[0].pattern, system.foils()[0].tangent);
+  const MatX derivative = differences(system, at, 0);
+  const double skew = relative_difference(derivative.transpose(), derivative);
+  EXPECT_GT(skew, 0.01);
+  std::printf("largest difference across the diagonal %.2g of the largest entry\n", skew);
+  EXPECT_LT(relative_difference(0.5 * (derivative + derivative.transpose()), tangent), 1e-6);
+}
+
+TEST_P(SystemOfEveryElement, WithoutAPotentialNewtonArrivesLater) {
+  const tests::Solved with(table_of_stresses(GetParam(), 1e5, true));
+  const tests::Solved without(table_of_stresses(GetParam(), 1e5, false));
+  ASSERT_TRUE(with.converged()) << with.path.reason;
+  ASSERT_TRUE(without.converged()) << without.path.reason;
+  EXPECT_EQ(without.path.steps, with.path.steps);
+  EXPECT_GT(without.iterations(), with.iterations());
+  std::printf("%d iterations with a potential, %d without\n", with.iterations(), without.iterations());
+}
+
 } // namespace

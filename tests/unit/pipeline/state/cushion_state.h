@@ -108,8 +108,8 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
     // the weather side alone is welded: its elements of the left and the right half, the seam where they meet
     if (state.foils.empty()) {
       foil.strips = {"upper-1", "upper-2"};
-      for (std::size_t e = 0; e < elements.size(); ++e) {
-        foil.strip_of_element.push_back(2 * elements[e][0].first < columns - 1 ? 0 : 1);
+      for (const auto& element : elements) {
+        foil.strip_of_element.push_back(2 * element[0].first < columns - 1 ? 0 : 1);
       }
       foil.seams = {{"S1", 0, 1, {block.connectivity[0], block.connectivity[1], block.connectivity[2]}},
                     {"S2", 1, 0, {block.connectivity[1], block.connectivity[0]}}};

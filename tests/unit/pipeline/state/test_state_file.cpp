@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(StateFile, StateOfEachElement,
 TEST(StateFile, KeepsEveryBitOfOddNumbers) {
   const TemporaryFolder folder;
   State state = cushion_state(ElementType::T6, 2, 1);
-  const double nan_with_payload = std::bit_cast<double>(0x7ff0000000abcdefULL); // signalling
+  const auto nan_with_payload = std::bit_cast<double>(0x7ff0000000abcdefULL); // signalling
   state.fields[1].values[0] = nan_with_payload;
   state.fields[1].values[1] = -0.0;
   state.fields[1].values[2] = std::numeric_limits<double>::denorm_min();

@@ -214,13 +214,13 @@ TEST(Materials, StageFileReadsBackToTheSameBytes) {
           ", strain: small, modulus: tangent, tension_field: on, thermal_expansion: 9.1e-5 K-1, "
           "viscosity: {model: perzyna, mu: 3.3 min, epsilon: 0.13, threshold: 1.5 MPa}",
       std::string(j2) + ", viscosity: {model: peric, mu: 3.3 min, epsilon: 0.13}",
-      "law: j2, E: 900 MPa, nu: 0.45, softening: on, hardening: [{stress: 15 MPa, modulus: -20.3 MPa}, {stress: 12 "
-      "MPa, modulus: 0 MPa}]",
+      ("law: j2, E: 900 MPa, nu: 0.45, softening: on, hardening: [{stress: 15 MPa, modulus: -20.3 MPa}, {stress: 12 "
+       "MPa, modulus: 0 MPa}]"),
       "law: ogden, terms: [{mu: 630.1 kPa, alpha: 1.3}, {mu: -10.3 kPa, alpha: -2.1}]",
-      "law: neo_hooke, C1: 3.3 MPa, strength: {characteristic: 21.1 MPa, weld: 30.3 MPa, ultimate: 47.1 MPa, factors: "
-      "{gamma_M: 1.1}, temperature: [{at: 0.3 degC, factor: 0.7}], source: a book}",
-      "law: pd_nurbs, data: a.csv, net: [13, 13], degree: 4, range: [-0.07, 0.33], outside: linear, potential: off, "
-      "smoothing: 1e-5, nu: 0.43",
+      ("law: neo_hooke, C1: 3.3 MPa, strength: {characteristic: 21.1 MPa, weld: 30.3 MPa, ultimate: 47.1 MPa, factors: "
+       "{gamma_M: 1.1}, temperature: [{at: 0.3 degC, factor: 0.7}], source: a book}"),
+      ("law: pd_nurbs, data: a.csv, net: [13, 13], degree: 4, range: [-0.07, 0.33], outside: linear, potential: off, "
+       "smoothing: 1e-5, nu: 0.43"),
       "law: le_nurbs, data: [a.csv, a.csv], shear_data: s.csv, net: [13, 7]",
       "law: le_nurbs, points: [[0.1, 0, 3e6, 0, 1], [0, 0.1, 0, 3e6, 1]], shear_points: [[0.1, 1e6, 1]], net: [13, 7]"};
   for (const std::string& keys : varied) {

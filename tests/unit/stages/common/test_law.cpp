@@ -4,6 +4,7 @@
 
 #include "geometry/base/errors.h"
 #include "stages/common/law.h"
+#include "tests/unit/message_of.h"
 
 namespace pneuma::stages::common {
 namespace {
@@ -12,6 +13,7 @@ using base::Vec3;
 using pipeline::workflow::Material;
 using solver::material::Response;
 using testing::HasSubstr;
+using tests::message_of;
 namespace workflow = pipeline::workflow;
 
 constexpr double room = 296.15; // K
@@ -129,26 +131,16 @@ TEST(Law, TakesItsValuesAtTheTemperature) {
   EXPECT_DOUBLE_EQ(made.poissons_ratio, 0.445);
 }
 
-template <class F>
-std::string message_of(const F& action) {
-  try {
-    action();
-  } catch (const base::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(BadLaw, OutsideTheTemperaturesOfItsTableIsToldWithItsPlace) {
   Material material = material_of(workflow::ElasticLaw{9e8, 0.45});
   material.other[273.15] = workflow::ElasticLaw{1e9, 0.45};
-  EXPECT_EQ(message_of([&] { made_of(material, room + 7); }),
+  EXPECT_EQ(message_of<base::InputError>([&] { made_of(material, room + 7); }),
             "etfe.yaml:3:1: material `foil`: its values are for 0 to 23 degC, not 30 degC");
 }
 
 TEST(BadLaw, UnstableOgdenConstantsAreToldWithWhereTheyAre) {
   const Material material = material_of(workflow::OgdenLaw{{{6e6, 2}, {-1e6, 4}}});
-  EXPECT_THAT(message_of([&] { made_of(material); }),
+  EXPECT_THAT(message_of<base::InputError>([&] { made_of(material); }),
               HasSubstr("etfe.yaml:3:1: material `foil`: its Ogden constants are unstable, more strain needs less "
                         "stress, in uniaxial tension at stretches from 0.25 to 0.333, "));
 }
@@ -157,7 +149,7 @@ TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
   workflow::TableLaw law;
   law.points = {{0.01, 0.01, 9e6, 9e6, 1}, {0.01, 0.01, 9e6, 9e6, 1}};
   law.range = {-0.01, 0.02};
-  EXPECT_THAT(message_of([&] { made_of(material_of(law)); }),
+  EXPECT_THAT(message_of<base::InputError>([&] { made_of(material_of(law)); }),
               HasSubstr("etfe.yaml:3:1: material `foil`: its table cannot be fitted: "));
 }
 
