@@ -126,6 +126,28 @@ std::string fault_in_chambers(const State& state) {
   return {};
 }
 
+std::string fault_in_loads(const State& state) {
+  std::set<std::string> names;
+  for (const Load& load : state.loads) {
+    const std::string whose = fmt::format("load {}", load.name);
+    if (!names.insert(load.name).second) return fmt::format("two loads are called {}", load.name);
+    if (load.block < 0 || static_cast<std::size_t>(load.block) >= state.mesh.blocks.size()) {
+      return fmt::format("{} names block {}, but there are {}", whose, load.block, state.mesh.blocks.size());
+    }
+    if (!load.dead.empty() && load.dead.size() != 3 * state.mesh.nodes.size()) {
+      return fmt::format("{} has {} forces for {} nodes", whose, load.dead.size() / 3, state.mesh.nodes.size());
+    }
+    if (load.offset.empty() && load.points.empty()) continue;
+    const Index elements = state.mesh.element_count(state.mesh.blocks[static_cast<std::size_t>(load.block)]);
+    if (load.offset.size() != static_cast<std::size_t>(elements) + 1 || load.offset.front() != 0 ||
+        !std::is_sorted(load.offset.begin(), load.offset.end()) ||
+        static_cast<std::size_t>(load.offset.back()) != load.points.size()) {
+      return fmt::format("{}: its places do not belong to {} elements", whose, elements);
+    }
+  }
+  return {};
+}
+
 std::string fault_in_field(const State& state, const Field& field) {
   if (field.name.empty() || field.name == "." || field.name.find('/') != std::string::npos) {
     return fmt::format("a field cannot be called '{}'", field.name);
@@ -165,7 +187,7 @@ std::size_t gauss_count(const State& state, const Block& block) {
 }
 
 std::string first_fault(const State& state) {
-  for (std::string (*fault_in)(const State&) : {fault_in_mesh, fault_in_foils, fault_in_chambers}) {
+  for (std::string (*fault_in)(const State&) : {fault_in_mesh, fault_in_foils, fault_in_chambers, fault_in_loads}) {
     std::string fault = fault_in(state);
     if (!fault.empty()) return fault;
   }

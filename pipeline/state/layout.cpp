@@ -313,6 +313,37 @@ std::vector<Chamber> read_chambers(const Group& group) {
   return chambers;
 }
 
+void write_loads(const Group& group, const std::vector<Load>& loads) {
+  group.write("name", column(loads, &Load::name));
+  write_list(group, "block", column(loads, &Load::block), "1");
+  write_list(group, "pressure", column(loads, &Load::pressure), "Pa");
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const Load& load = loads[i];
+    const Group one = group.create(numbered(i));
+    write_list(one, "offset", load.offset, "1");
+    static_assert(sizeof(geometry::QuadraturePoint) == 3 * sizeof(double));
+    const double* first = load.points.empty() ? nullptr : &load.points.front().xi;
+    one.write<double>("points", {first, 3 * load.points.size()}, {load.points.size(), 3}, "1");
+    one.write<double>("dead", load.dead, {load.dead.size() / 3, 3}, "N");
+  }
+}
+
+std::vector<Load> read_loads(const Group& group) {
+  const std::vector<std::string> names = group.read_texts("name");
+  const std::vector<Index> blocks = group.read<Index>("block", {names.size()});
+  const std::vector<double> pressures = group.read<double>("pressure", {names.size()});
+  std::vector<Load> loads;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Group one = group.open(numbered(i));
+    Load load{names[i], blocks[i], pressures[i], one.read<Index>("offset", {any}), {}, {}};
+    const std::vector<double> points = one.read<double>("points", {any, 3});
+    for (std::size_t k = 0; k < points.size(); k += 3) load.points.push_back({points[k], points[k + 1], points[k + 2]});
+    load.dead = one.read<double>("dead", {any, 3});
+    loads.push_back(std::move(load));
+  }
+  return loads;
+}
+
 // The list keeps the fields' order and what a dataset in PointData or CellData cannot say; the values of Gauss fields
 // lie here, too.
 void write_fields(const Group& group, const State& state) {
@@ -425,6 +456,7 @@ std::string to_bytes(const State& state) {
     const Group foils = pneuma.create("foils");
     for (std::size_t i = 0; i < state.foils.size(); ++i) write_foil(foils.create(numbered(i)), state, state.foils[i]);
     write_chambers(pneuma.create("chambers"), state.chambers);
+    write_loads(pneuma.create("loads"), state.loads);
     write_fields(pneuma.create("fields"), state);
     write_provenance(pneuma.create("provenance"), state.provenance);
   });
@@ -456,6 +488,7 @@ State from_bytes(const std::string& bytes) {
     state.foils.push_back(read_foil(foils, numbered(i), state));
   }
   state.chambers = read_chambers(pneuma.open("chambers"));
+  state.loads = read_loads(pneuma.open("loads"));
   state.fields = read_fields(pneuma.open("fields"), vtk, state);
   state.provenance = read_provenance(pneuma.open("provenance"));
   const std::string fault = first_fault(state);

@@ -15,7 +15,7 @@ using base::Index;
 using base::Vec3;
 
 // Version of the layout below and of the file; a file of another version is refused with a message.
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 
 // Where a state comes from. Text only: nothing here takes part in computing.
 struct Provenance {
@@ -76,6 +76,18 @@ struct Chamber {
   Index connected_to = -1;     // number of the chamber whose air it shares, which is not itself connected; -1: none
 };
 
+// What acts on a foil beside the air in the chambers and its weight when a stage ends; the next stage begins with it.
+struct Load {
+  std::string name; // in the settings
+  Index block = 0;
+  double pressure = 0; // along the foil's positive normal, follows it, Pa
+  // Where the pressure acts: on all of the foil or, if not empty, at these places of the elements, points[offset[e]] to
+  // points[offset[e + 1]] of element e.
+  std::vector<Index> offset;
+  std::vector<geometry::QuadraturePoint> points;
+  std::vector<double> dead; // forces that keep their direction [node][3], N; empty: none
+};
+
 enum class Location : std::uint8_t { point, cell, gauss };
 
 // A named result. point: [node][component]; cell: [element of all blocks in order][component]; gauss: one block's
@@ -97,6 +109,7 @@ struct State {
   std::vector<Foil> foils;         // one per block
   std::vector<std::uint8_t> fixed; // [node][3], 1: this coordinate is held
   std::vector<Chamber> chambers;
+  std::vector<Load> loads;
   std::vector<Field> fields;
 };
 

@@ -115,12 +115,16 @@ private:
   bool in_cycle(const std::string& id, const Value& from, const std::map<std::string, const Value*>& known);
   FormfindSettings formfind_of(const Value& stage, const std::string& path);
   InflateSettings inflate_of(const Value& stage, const std::string& path, const std::string& from_run);
-  WindSettings wind_of(const Value& stage, const std::string& path);
+  WindSettings wind_of(const Value& stage, const std::string& path, const std::map<std::string, const Value*>& known);
   Gas gas_of(const Value& value);
   Load load_of(const Value& value, const Value* factors, const std::vector<Load>& before);
   void check_loaded_foil(const Value& foil, const Load& load);
   Region region_of(const Value& region);
-  void check_factors(const Value* factors, const std::vector<Load>& loads);
+  // The loads of the stages before, which a wind stage begins with: name -> stage. In stage.yaml they are not known.
+  std::map<std::string, std::string> loads_before(const Value& stage, const std::map<std::string, const Value*>& known);
+  // Factors of loads that are not the stage's own.
+  std::map<std::string, double> carried_of(const Value* factors, const std::vector<Load>& own,
+                                           const std::map<std::string, std::string>& before, bool from_wind);
   void check_gravity();
 
   // builder_pattern.cpp

@@ -311,7 +311,7 @@ void Builder::add_stage(const std::string& id, const Value& stage, const std::ma
   } else if (out.run == "inflate") {
     out.settings = inflate_of(stage, path, out.from_run);
   } else if (out.run == "wind") {
-    out.settings = wind_of(stage, path);
+    out.settings = wind_of(stage, path, known);
   }
   workflow_.stages.push_back(std::move(out));
 }
@@ -333,18 +333,12 @@ void Builder::check_from(const std::string& id, const Value& stage, const Value&
   static const std::map<std::string, std::vector<std::string>> starts = {{"formfind", {"mesh"}},
                                                                          {"pattern", {"formfind"}},
                                                                          {"inflate", {"mesh", "formfind", "pattern"}},
-                                                                         {"wind", {"inflate"}}};
+                                                                         {"wind", {"inflate", "wind"}}};
   const auto allowed = starts.find(out.run);
   if (!stage.valid || allowed == starts.end() || out.from_run.empty()) return;
   if (std::find(allowed->second.begin(), allowed->second.end(), out.from_run) != allowed->second.end()) return;
-  const std::string starts_from = schema::joined(allowed->second);
-  if (out.run == "wind" && out.from_run == "wind") {
-    return fail(
-        from.mark,
-        fmt::format("`run: wind` from a stage of `run: wind` is not available yet; it starts from: {}", starts_from));
-  }
   fail(from.mark, fmt::format("`run: {}` cannot start from `{}` (`run: {}`); it starts from: {}", out.run, out.from,
-                              out.from_run, starts_from));
+                              out.from_run, schema::joined(allowed->second)));
 }
 
 bool Builder::in_cycle(const std::string& id, const Value& from, const std::map<std::string, const Value*>& known) {
@@ -408,7 +402,8 @@ InflateSettings Builder::inflate_of(const Value& stage, const std::string& path,
   return out;
 }
 
-WindSettings Builder::wind_of(const Value& stage, const std::string& path) {
+WindSettings Builder::wind_of(const Value& stage, const std::string& path,
+                              const std::map<std::string, const Value*>& known) {
   WindSettings out;
   out.contact_stops = text_of(stage, "contact") != "ignore";
   for (const std::string& chamber : chamber_names_) {
@@ -430,8 +425,31 @@ WindSettings Builder::wind_of(const Value& stage, const std::string& path) {
   if (const Value* loads = stage.find("loads")) {
     for (const Value& load : loads->items) out.loads.push_back(load_of(load, factors, out.loads));
   }
-  check_factors(factors, out.loads);
+  const std::map<std::string, std::string> before = loads_before(stage, known);
+  for (std::size_t i = 0; i < out.loads.size(); ++i) {
+    const auto found = before.find(out.loads[i].name);
+    if (found == before.end()) continue;
+    fail((*stage.find("loads")).items[i].mark,
+         fmt::format(
+             "load `{}` acts since stage `{}`: to change it give its factor in `factors`, or choose another name",
+             found->first, found->second));
+  }
+  out.carried = carried_of(factors, out.loads, before, is_stage_file_ && text_of(stage, "from_run") == "wind");
   return out;
+}
+
+std::map<std::string, std::string> Builder::loads_before(const Value& stage,
+                                                         const std::map<std::string, const Value*>& known) {
+  std::map<std::string, std::string> names;
+  std::set<std::string> visited; // circles are told elsewhere
+  for (std::string id = text_of(stage, "from"); visited.insert(id).second; id = text_of(*known.at(id), "from")) {
+    const auto found = known.find(id);
+    if (is_stage_file_ || found == known.end() || found->second->text != "wind") break;
+    const Value* loads = found->second->find("loads");
+    if (loads == nullptr) continue;
+    for (const Value& load : loads->items) names.try_emplace(text_of(load, "name"), id);
+  }
+  return names;
 }
 
 Gas Builder::gas_of(const Value& value) {
@@ -505,15 +523,25 @@ Region Builder::region_of(const Value& region) {
   return PlanBox{{x->items[0].number, x->items[1].number}, {y->items[0].number, y->items[1].number}};
 }
 
-void Builder::check_factors(const Value* factors, const std::vector<Load>& loads) {
-  if (factors == nullptr) return;
+std::map<std::string, double> Builder::carried_of(const Value* factors, const std::vector<Load>& own,
+                                                  const std::map<std::string, std::string>& before, bool from_wind) {
+  std::map<std::string, double> carried;
+  if (factors == nullptr) return carried;
   std::vector<std::string> names;
-  for (const Load& load : loads) names.push_back(load.name);
+  for (const Load& load : own) names.push_back(load.name);
+  const std::size_t count = names.size();
+  for (const auto& [name, stage] : before) names.push_back(name);
   for (const auto& [name, value] : factors->members) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found < names.begin() + static_cast<std::ptrdiff_t>(count)) continue;
+    if (found != names.end() || from_wind) { // the stage itself knows the names of the state that it starts from
+      carried[name] = value.number;
+      continue;
+    }
     fail(value.key,
          fmt::format("there is no load `{}`{}; loads: {}", name, suggestion(name, names), schema::joined(names)));
   }
+  return carried;
 }
 
 void Builder::check_gravity() {

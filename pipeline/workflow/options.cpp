@@ -374,14 +374,17 @@ Option wind() {
              patch, either("region", {all, part}, "where it acts").otherwise("all")},
             "a load")
           .exactly_one({"wind", "snow", "patch"});
-  return group("wind",
-               start() +
-                   Options{table("gas", gas, "per chamber [regulated]").otherwise("{}"),
-                           list("loads", load, "what acts").otherwise("[]"),
-                           table("factors", number("LOAD", "factor"), "of the loads, by name").otherwise("{}"),
-                           contact(), control(), path_options()} +
-                   time(),
-               "loads the inflated cushion")
+  return group(
+             "wind",
+             start() +
+                 Options{table("gas", gas, "per chamber [regulated]").otherwise("{}"),
+                         list("loads", load, "what acts").otherwise("[]"),
+                         table("factors", number("LOAD", "factor"),
+                               "of the loads, by name; of a load of the wind stage before: the part of it that is left")
+                             .otherwise("{}"),
+                         contact(), control(), path_options()} +
+                 time(),
+             "loads the inflated cushion")
       .not_both("duration", "history");
 }
 

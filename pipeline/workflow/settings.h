@@ -321,6 +321,7 @@ struct Load {
 struct WindSettings {
   std::map<std::string, Gas> gas; // chamber -> law, every chamber present that is not connected to another
   std::vector<Load> loads;
+  std::map<std::string, double> carried; // load that the `from` stage ends with -> factor that it goes to; others stay
   bool contact_stops = true;
   Control control;
 };

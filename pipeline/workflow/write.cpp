@@ -453,6 +453,7 @@ void add_settings(Node& node, const WindSettings& settings) {
     loads.items.push_back(load_node(load));
     add(factors, load.name, plain(load.factor));
   }
+  for (const auto& [name, factor] : settings.carried) add(factors, name, plain(factor));
   add(node, "loads", loads);
   add(node, "factors", factors);
   add_path(node, settings.contact_stops, settings.control);

@@ -24,11 +24,10 @@ void add_plan_load(const geometry::Mesh& mesh, Index block, std::span<const Vec3
   });
 }
 
-assembly::PressureZone pressure_zone(const geometry::Mesh& mesh, Index block, const geometry::RegionQuadrature& region,
-                                     const assembly::Ramp& pressure) {
+assembly::PressureZone pressure_zone(const geometry::Mesh& mesh, Index block,
+                                     const geometry::RegionQuadrature& region) {
   assembly::PressureZone zone;
   zone.block = block;
-  zone.pressure = pressure;
   const Index elements = mesh.element_count(mesh.blocks[static_cast<std::size_t>(block)]);
   auto part = region.parts.begin();
   zone.offset.push_back(0);

@@ -17,8 +17,7 @@ using base::VecX;
 void add_plan_load(const geometry::Mesh& mesh, Index block, std::span<const Vec3> positions,
                    const geometry::RegionQuadrature& region, const Vec3& per_plan_area, VecX& force);
 
-// A follower pressure on a region of a block, along its positive normal, Pa.
-assembly::PressureZone pressure_zone(const geometry::Mesh& mesh, Index block, const geometry::RegionQuadrature& region,
-                                     const assembly::Ramp& pressure);
+// A region of a block for a follower pressure along its positive normal, without its pressure yet.
+assembly::PressureZone pressure_zone(const geometry::Mesh& mesh, Index block, const geometry::RegionQuadrature& region);
 
 } // namespace pneuma::solver::load

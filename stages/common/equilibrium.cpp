@@ -235,6 +235,15 @@ private:
       written.history.assign(history.begin(), history.end());
       written.history_names.assign(names.begin(), names.end());
     }
+    state.loads.clear();
+    for (const DrivenLoad& driven : drive_.loads) {
+      const double part = std::lerp(driven.from, driven.to, c.load_factor);
+      if (part == 0) continue;
+      pipeline::state::Load load = driven.load;
+      load.pressure *= part;
+      for (double& force : load.dead) force *= part;
+      state.loads.push_back(std::move(load));
+    }
     add_fields(foils, begin_, state);
     state.provenance = provenance(start_);
     return state;
@@ -459,6 +468,21 @@ assembly::Model make_model(const Start& start, const State& state, double weight
   }
   model.face_pressure.assign(state.mesh.blocks.size(), assembly::Ramp{});
   return model;
+}
+
+void add_load(const DrivenLoad& driven, assembly::Model& model) {
+  const pipeline::state::Load& load = driven.load;
+  const assembly::Ramp pressure{driven.from * load.pressure, driven.to * load.pressure};
+  if (!load.points.empty()) {
+    model.zones.push_back({load.block, load.offset, load.points, pressure});
+  } else if (load.pressure != 0) {
+    assembly::Ramp& face = model.face_pressure[static_cast<std::size_t>(load.block)];
+    for (std::size_t end = 0; end < 2; ++end) face[end] += pressure[end];
+  }
+  if (load.dead.empty()) return;
+  const Eigen::Map<const VecX> dead(load.dead.data(), static_cast<Eigen::Index>(load.dead.size()));
+  model.dead_from += driven.from * dead;
+  model.dead_to += driven.to * dead;
 }
 
 void run_equilibrium(const Start& start, Drive drive) {

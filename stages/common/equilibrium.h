@@ -15,12 +15,22 @@ namespace pneuma::stages::common {
 // `weight_from` and `weight_to`: parts of the weight that act at load factors 0 and 1.
 solver::assembly::Model make_model(const Start& start, const State& state, double weight_from, double weight_to);
 
+// A load of the stage, or of one before, and the parts of it that act at load factors 0 and 1.
+struct DrivenLoad {
+  pipeline::state::Load load;
+  double from = 0, to = 1;
+};
+
+// Puts a load on the model.
+void add_load(const DrivenLoad& driven, solver::assembly::Model& model);
+
 // Follows the path of a model and writes everything that a stage of this kind writes: steps, history.csv, state.hdf
 // with its digest, summary.json; with --check nothing. Throws Error with exit code 5 where the path does not reach its
 // end, after the last good state is written and marked.
 struct Drive {
   solver::assembly::Model model;
-  State state; // what the new state takes over: mesh, foils, supports, chambers
+  State state;                   // what the new state takes over: mesh, foils, supports, chambers
+  std::vector<DrivenLoad> loads; // those on the model; what of them acts at the end goes into the new state
   bool contact_stops = true;
   pipeline::workflow::Control control;
   // The load in a unit of its own, where the stage has one: what it is called and its value at load factor 1, SI.

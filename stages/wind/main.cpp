@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // pneuma-wind: from an inflated cushion to its state under wind, snow and patch loads, with the air in its chambers
 // taking part as the load case says.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "geometry/base/errors.h"
 #include "solver/load/loads.h"
@@ -26,13 +28,14 @@ geometry::PlanRegion region_of(const workflow::Region& region) {
   return geometry::WholePlan{};
 }
 
-void add_load(const workflow::Load& load, const common::Start& start, solver::assembly::Model& model) {
+// The load at factor 1.
+pipeline::state::Load load_of(const workflow::Load& load, const common::Start& start) {
   const geometry::Mesh& mesh = start.state.mesh;
   const std::vector<workflow::FoilSettings>& foils = start.workflow.cushion.foils;
   Index block = 0;
   while (foils[static_cast<std::size_t>(block)].name != load.foil) ++block;
   const geometry::Block& foil = mesh.blocks[static_cast<std::size_t>(block)];
-  const Vec3 up = start.workflow.site.up.normalized();
+  pipeline::state::Load out{load.name, block, 0, {}, {}, {}};
   const auto quadrature = [&](const geometry::PlanRegion& region) {
     return geometry::region_quadrature(mesh, foil, mesh.nodes, region);
   };
@@ -45,17 +48,22 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
     }
     return inside;
   };
+  const auto dead = [&](const geometry::RegionQuadrature& region, const Vec3& per_plan_area) {
+    VecX force = VecX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
+    solver::load::add_plan_load(mesh, block, mesh.nodes, region, per_plan_area, force);
+    out.dead.assign(force.begin(), force.end());
+  };
 
   if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
     // the first foil shows its weather face (normal outwards), the last of several its room face
-    const double along_normal = (block == 0 ? -1 : 1) * load.factor * wind->pressure;
-    if (std::holds_alternative<std::monostate>(load.region)) {
-      model.face_pressure[static_cast<std::size_t>(block)][1] += along_normal;
-    } else {
-      model.zones.push_back(solver::load::pressure_zone(mesh, block, loaded(), {0.0, along_normal}));
+    out.pressure = (block == 0 ? -1 : 1) * wind->pressure;
+    if (!std::holds_alternative<std::monostate>(load.region)) {
+      solver::assembly::PressureZone zone = solver::load::pressure_zone(mesh, block, loaded());
+      out.offset = std::move(zone.offset);
+      out.points = std::move(zone.points);
     }
   } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
-    solver::load::add_plan_load(mesh, block, mesh.nodes, loaded(), -load.factor * snow->weight * up, model.dead_to);
+    dead(loaded(), -snow->weight * start.workflow.site.up.normalized());
   } else {
     const auto& patch = std::get<workflow::PatchLoad>(load.kind);
     if (!std::holds_alternative<std::monostate>(load.region)) {
@@ -73,8 +81,39 @@ void add_load(const workflow::Load& load, const common::Start& start, solver::as
                       "it smaller",
                       to_string(load.mark), load.name, common::number(area), common::number(wanted), foil.name));
     }
-    solver::load::add_plan_load(mesh, block, mesh.nodes, inside, load.factor / area * patch.force, model.dead_to);
+    dead(inside, patch.force / area);
   }
+  return out;
+}
+
+// What acts in the state that the stage starts from: it stays, or goes to the part of it that `factors` says.
+std::vector<common::DrivenLoad> carried_loads(const common::Start& start, const workflow::WindSettings& settings,
+                                              std::vector<std::string>& modelled) {
+  std::vector<common::DrivenLoad> loads;
+  std::vector<std::string> names;
+  for (const pipeline::state::Load& load : start.state.loads) {
+    const auto factor = settings.carried.find(load.name);
+    loads.push_back({load, 1, factor == settings.carried.end() ? 1 : factor->second});
+    names.push_back(load.name);
+    modelled.push_back(fmt::format("load {}: of the state before, {}", load.name,
+                                   factor == settings.carried.end()
+                                       ? "stays as it is"
+                                       : fmt::format("goes to {} of what it was", common::number(factor->second))));
+  }
+  for (const auto& [name, factor] : settings.carried) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw base::InputError(
+        fmt::format("`factors` names load `{}`, which does not act in the state that the stage "
+                    "starts from; there {}",
+                    name, names.empty() ? "no load does" : fmt::format("act: {}", fmt::join(names, ", "))));
+  }
+  for (const workflow::Load& own : settings.loads) {
+    if (std::find(names.begin(), names.end(), own.name) == names.end()) continue;
+    throw base::InputError(fmt::format("{}: load `{}` acts in the state that the stage starts from: to change it give "
+                                       "its factor in `factors`, or choose another name",
+                                       to_string(own.mark), own.name));
+  }
+  return loads;
 }
 
 // `volume`: of the air now, that of connected chambers included, m3.
@@ -131,13 +170,15 @@ int run(int argc, char** argv) {
     }
     drive.modelled.push_back(text);
   }
+  drive.loads = carried_loads(start, settings, drive.modelled);
   for (const workflow::Load& load : settings.loads) {
-    add_load(load, start, drive.model);
+    drive.loads.push_back({load_of(load, start), 0, load.factor});
     constexpr const char* kinds[] = {"wind as a pressure that follows the foil", "snow as a dead load on the plan",
                                      "patch as a dead load on the plan"};
     drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
   }
-  if (settings.loads.size() == 1) { // then the load has a name and a unit of its own
+  for (const common::DrivenLoad& driven : drive.loads) common::add_load(driven, drive.model);
+  if (settings.loads.size() == 1 && settings.carried.empty()) { // then the load has a name and a unit of its own
     const workflow::Load& load = settings.loads.front();
     if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
       drive.load_name = "wind";

@@ -61,8 +61,9 @@ TEST(Loads, PatchActsAtItsMiddleWithItsWholeForceOnEveryMesh) {
 
 TEST(Loads, ZoneOverTheWholeFoilIsTheFacePressure) {
   const Mesh mesh = dome(ElementType::T6, 4);
-  const assembly::PressureZone zone =
-      load::pressure_zone(mesh, 0, region_quadrature(mesh, mesh.blocks[0], mesh.nodes, WholePlan{}), {0.0, 200.0});
+  assembly::PressureZone zone =
+      load::pressure_zone(mesh, 0, region_quadrature(mesh, mesh.blocks[0], mesh.nodes, WholePlan{}));
+  zone.pressure = {0.0, 200.0};
   ASSERT_EQ(zone.offset.size(), static_cast<std::size_t>(mesh.element_count(mesh.blocks[0])) + 1);
   Vec3 resultant = Vec3::Zero();
   PressureElement<ElementType::T6> p;

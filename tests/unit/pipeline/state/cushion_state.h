@@ -117,6 +117,12 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
     state.foils.push_back(foil);
   }
   state.chambers = {{"main", 0, 1, 0.05, GasLaw::closed, 1.4, 400.0, 101325.0, 296.15, 9.5, -1}};
+  const auto of_block = static_cast<std::size_t>(mesh.element_count(mesh.blocks[1]));
+  std::vector<Index> offset(of_block + 1, 2); // two places in the first element
+  offset[0] = 0;
+  state.loads = {{"Böe", 0, -600, {}, {}, {}},
+                 {"part", 1, 250, offset, {{0.25, 0.5, 0.1}, {0.125, 0.3, 0.2}}, {}},
+                 {"snow", 0, 0, {}, {}, numbers(3 * mesh.nodes.size())}};
   std::vector<double> displacement;
   for (const Vec3& node : mesh.nodes) displacement.insert(displacement.end(), {0.01 * node.x(), 0, 0.1 * node.z()});
   std::vector<double> stress;

@@ -84,6 +84,22 @@ inline void expect_same(const pipeline::state::State& a, const pipeline::state::
     EXPECT_TRUE(same_bits(p.temperature, q.temperature));
     EXPECT_TRUE(same_bits(p.volume, q.volume));
   }
+  ASSERT_EQ(a.loads.size(), b.loads.size());
+  for (std::size_t i = 0; i < a.loads.size(); ++i) {
+    const pipeline::state::Load& p = a.loads[i];
+    const pipeline::state::Load& q = b.loads[i];
+    EXPECT_EQ(p.name, q.name);
+    EXPECT_EQ(p.block, q.block);
+    EXPECT_EQ(p.offset, q.offset);
+    EXPECT_TRUE(same_bits(p.pressure, q.pressure));
+    EXPECT_TRUE(same_bits(p.dead, q.dead));
+    ASSERT_EQ(p.points.size(), q.points.size());
+    for (std::size_t k = 0; k < p.points.size(); ++k) {
+      EXPECT_TRUE(same_bits(p.points[k].xi, q.points[k].xi));
+      EXPECT_TRUE(same_bits(p.points[k].eta, q.points[k].eta));
+      EXPECT_TRUE(same_bits(p.points[k].weight, q.points[k].weight));
+    }
+  }
   ASSERT_EQ(a.fields.size(), b.fields.size());
   for (std::size_t i = 0; i < a.fields.size(); ++i) {
     EXPECT_EQ(a.fields[i].name, b.fields[i].name);

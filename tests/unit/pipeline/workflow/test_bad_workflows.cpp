@@ -195,11 +195,17 @@ const Bad cases[] = {
     {"WindFromMesh",
      "from: inflated",
      "from: @mesh",
-     {"`run: wind` cannot start from `mesh` (`run: mesh`); it starts from: inflate"}},
-    {"WindFromWind",
+     {"`run: wind` cannot start from `mesh` (`run: mesh`); it starts from: inflate, wind"}},
+    {"FactorOfNoLoadBefore",
      "  gust:",
-     "  more: {run: wind, from: @gust}\n  gust:",
-     {"`run: wind` from a stage of `run: wind` is not available yet; it starts from: inflate"}},
+     "  later: {run: wind, from: more, factors: {suction: 0, extra: 2, @sucton: 1}}\n"
+     "  more: {run: wind, from: gust, loads: [{name: extra, foil: upper, snow: 1 kPa}]}\n  gust:",
+     {"there is no load `sucton`; did you mean `suction`?; loads: extra, suction"}},
+    {"LoadOfTheSameNameBefore",
+     "  gust:",
+     "  later: {run: wind, from: more, loads: [@{name: suction, foil: upper, snow: 1 kPa}]}\n"
+     "  more: {run: wind, from: gust}\n  gust:",
+     {"load `suction` acts since stage `gust`: to change it give its factor in `factors`, or choose another name"}},
     {"FormfindFromInflate",
      form,
      "{run: formfind, from: mesh, gauge_pressure: {top: 400 Pa, bottom: 400 Pa}, prestress: {all: 0.89 kN/m}}\n"
