@@ -50,14 +50,19 @@ void write_csv(const std::filesystem::path& path) {
   }
 }
 
+// "1.0e-02: why", or why there is none
+std::string tolerance_of(const Row& r) {
+  return r.tolerance == unbounded ? r.why : fmt::format("{:.1e}: {}", r.tolerance, r.why);
+}
+
 void write_markdown(const std::filesystem::path& path) {
   std::ofstream file(path);
   file << "| | quantity | thesis | literature | reference | | ours | error | tolerance | mesh | iterations | remark |\n"
           "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Row& r : rows()) {
-    file << fmt::format("| {} | {} | {} | {} | {} | {:.6g} | {:.6g} | {:.1e} | {:.1e}: {} | {} | {} | {} |\n",
-                        r.example, r.quantity, r.thesis, literature(r), r.reference_name, r.reference, r.ours,
-                        r.error(), r.tolerance, r.why, r.mesh, iterations_of(r), r.remark);
+    file << fmt::format("| {} | {} | {} | {} | {} | {:.6g} | {:.6g} | {:.1e} | {} | {} | {} | {} |\n", r.example,
+                        r.quantity, r.thesis, literature(r), r.reference_name, r.reference, r.ours, r.error(),
+                        tolerance_of(r), r.mesh, iterations_of(r), r.remark);
   }
 }
 
