@@ -276,6 +276,12 @@ TableStress along_axes(const Response& r) {
   return {r.stress[0], r.stress[1], r.tangent(0, 0), r.tangent(0, 1), r.tangent(1, 0), r.tangent(1, 1)};
 }
 
+// The least slope of a stress by its own strain: of the Kirchhoff stress, or of S.
+double least_slope(const TableStress& at, const Vec2& e, bool of_kirchhoff) {
+  if (!of_kirchhoff) return std::min(at.d11, at.d22);
+  return std::min(2 * at.first + (1 + 2 * e[0]) * at.d11, 2 * at.second + (1 + 2 * e[1]) * at.d22);
+}
+
 // Monotony of the Kirchhoff stress, or of S, and integrability, looked for at these strains.
 template <class F>
 void judge(const F& stress, bool of_kirchhoff, const TableDomain& domain, std::span<const Vec2> places,
@@ -286,9 +292,7 @@ void judge(const F& stress, bool of_kirchhoff, const TableDomain& domain, std::s
   for (const Vec2& e : places) {
     if (!domain.holds(e[0], e[1])) continue;
     const TableStress at = stress(e[0], e[1]);
-    const double slope = of_kirchhoff
-                             ? std::min(2 * at.first + (1 + 2 * e[0]) * at.d11, 2 * at.second + (1 + 2 * e[1]) * at.d22)
-                             : std::min(at.d11, at.d22);
+    const double slope = least_slope(at, e, of_kirchhoff);
     if (slope < least) {
       least = slope;
       report.not_monotone = e;
@@ -559,6 +563,14 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
   strains.insert(strains.end(), between.begin(), between.end());
   std::erase_if(strains, [&](const Vec2& e) { return !fit.table->domain.holds(e[0], e[1]); });
   const std::vector<StressPoint> held = sample(law, strains, time);
+  // where the law is level it has no slope whose sign a table could keep
+  std::erase_if(strains, [&](const Vec2& e) {
+    Response response;
+    constexpr double level = 1e-3; // of the elastic stiffness
+    return !ask(law, Vec3(e[0], e[1], 0), time, response) ||
+           !(least_slope(along_axes(response), e, fit.table->yield->logarithmic) >
+             level * fit.table->yield->elasticity.youngs_modulus);
+  });
   report(fit.table, held, held.size(), strains, fit.report);
   return fit;
 }

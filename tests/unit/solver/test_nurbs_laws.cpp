@@ -377,6 +377,15 @@ TEST(PdNurbsFit, FollowsMonotonicPlasticityBesideTheCornerOfYieldToo) {
   EXPECT_TRUE(of_etfe.report.monotone);
 }
 
+TEST(PdNurbsFit, DoesNotBlameATableForALevelLaw) {
+  const Elasticity elasticity{900e6, 0.45};
+  const Flow level = hardening({{15e6, 0}});
+  EXPECT_TRUE(fit_pd_nurbs(Law(Logarithmic{elasticity, level}), net(25, 3, {-0.1, 0.2})).report.monotone);
+  EXPECT_TRUE(fit_pd_nurbs(Law(J2{elasticity, level}), net(25, 3, {-0.1, 0.2})).report.monotone);
+  const Flow falling = hardening({{15e6, -100e6}, {10e6, 0}});
+  EXPECT_FALSE(fit_pd_nurbs(Law(Logarithmic{elasticity, falling}), net(25, 3, {-0.1, 0.2})).report.monotone);
+}
+
 TEST(PdNurbsFit, ConvergesBeyondYieldWithTheOrderOfItsDegree) {
   for (const int degree : {2, 3}) {
     double errors[2];
