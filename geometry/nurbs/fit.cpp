@@ -153,7 +153,7 @@ CurveFit fit(const Knots& knots, std::span<const CurveObservation> observations,
   check(settings);
   const double weights = sum_of_weights(observations);
   const std::vector<double> ends = breaks(knots);
-  const double spans = static_cast<double>(ends.size() - 1);
+  const auto spans = static_cast<double>(ends.size() - 1);
   Normal normal(static_cast<std::size_t>(knots.functions() - knots.degree), knots.degree + 1);
   std::vector<bool> covered(ends.size() - 1, false);
   MatX seen(static_cast<Eigen::Index>(observations.size()), settings.penalized);
@@ -230,7 +230,7 @@ SurfaceFit fit(const Knots& u, const Knots& v, std::span<const SurfaceObservatio
   const std::vector<double> ends_v = breaks(v);
   const std::size_t cells_v = ends_v.size() - 1;
   std::vector<bool> covered((ends_u.size() - 1) * cells_v, false);
-  const double cells = static_cast<double>(covered.size());
+  const auto cells = static_cast<double>(covered.size());
   Normal normal(static_cast<std::size_t>((u.functions() - u.degree) * firsts_v), (u.degree + 1) * (v.degree + 1));
   Basis in_u;
   Basis in_v;

@@ -70,7 +70,7 @@ TEST(PdNurbs, FollowsNeoHookeAndMooneyRivlinBetterWithEveryNet) {
 
 TEST(PdNurbs, ErrorFallsWithTheOrderOfItsDegree) {
   for (const int degree : {2, 3, 4}) {
-    double errors[2];
+    double errors[2] = {};
     for (int k = 0; k < 2; ++k) {
       const PdFit fit = fit_pd_nurbs(Law(neo_hooke), net(degree + (k == 0 ? 20 : 40), degree));
       errors[k] = difference({fit.table}, neo_hooke, wide, 0.1 * neo_hooke.c1);
@@ -388,7 +388,7 @@ TEST(PdNurbsFit, DoesNotBlameATableForALevelLaw) {
 
 TEST(PdNurbsFit, ConvergesBeyondYieldWithTheOrderOfItsDegree) {
   for (const int degree : {2, 3}) {
-    double errors[2];
+    double errors[2] = {};
     for (const int k : {0, 1}) {
       const PdFit fit = fit_pd_nurbs(Law(steel), net(degree + (k == 0 ? 24 : 48), degree, {-0.05, 0.1}));
       errors[k] = largest_error(PdNurbs{fit.table}, steel);

@@ -158,8 +158,12 @@ constexpr double viscous_displacement = 0.2 * mm;
 
 // In 20 steps, those of the plastic strip: both have the same error of the steps.
 PulledStrip pulled_at(double rate, const material::J2& law) {
-  return PulledStrip(perforated_strip, law, viscous_displacement, 20,
-                     viscous_displacement / perforated_strip.height / rate, std::numeric_limits<double>::infinity());
+  return {perforated_strip,
+          law,
+          viscous_displacement,
+          20,
+          viscous_displacement / perforated_strip.height / rate,
+          std::numeric_limits<double>::infinity()};
 }
 
 TEST(ViscoplasticStrip, ForceRisesWithTheRate) {

@@ -118,8 +118,10 @@ TEST(FoilResults, OfSlackAreasHoldNeitherSagNorDeflectionNorStrain) {
 TEST(FoilResults, ShowTheSurfaceStateOfFoilsWithATensionFieldOnly) {
   for (const bool with : {false, true}) {
     const solver::material::StVenantKirchhoff law{modulus, ratio};
-    const Welded foil(ElementType::T6, {0.004, -0.002},
-                      with ? solver::material::Law(solver::material::TensionField{law}) : law);
+    const Welded foil(
+        ElementType::T6, {0.004, -0.002},
+        with ? solver::material::Law(solver::material::TensionField<solver::material::StVenantKirchhoff>{law})
+             : solver::material::Law(law));
     State state;
     state.mesh = foil.mesh;
     add_fields({foil.results({})}, foil.mesh.nodes, state);
