@@ -35,6 +35,22 @@ inline Outcome call(const std::string& command) {
   return outcome;
 }
 
+// A workflow of one round foil of 1 m over a base, inflated from flat as stage `up`. `material`: the keys of its foil,
+// `site`: more keys of the site, `stages`: further stages, indented by two.
+inline std::string foil_over_base(const std::string& material, const std::string& pressure,
+                                  const std::string& site = "", const std::string& stages = "") {
+  return "pneuma: 1\nmaterials: {foil: {" + material + "}}\nsite: {gravity: off" + site + R"(}
+cushion:
+  plan: {shape: circle, radius: 0.5 m}
+  foils: [{name: foil, material: foil, thickness: 200 um}]
+  base: rigid
+  chambers: [{name: air, between: [foil, base]}]
+mesh: {element: T6, size: 0.12 m}
+stages:
+  up: {run: inflate, from: mesh, gauge_pressure: {air: )" +
+         pressure + "}, prestress: {all: 100 N/m}}\n" + stages;
+}
+
 // A folder of its own with the workflow `w.yaml`, removed at the end.
 class InFolder : public testing::Test {
 protected:

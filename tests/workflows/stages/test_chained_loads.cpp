@@ -14,17 +14,7 @@ using testing::HasSubstr;
 class ChainedLoads : public InFolder {
 protected:
   void inflated(const std::string& material, const std::string& stages) const {
-    write("pneuma: 1\nmaterials: {foil: {" + material + R"(}}
-site: {gravity: off}
-cushion:
-  plan: {shape: circle, radius: 0.5 m}
-  foils: [{name: foil, material: foil, thickness: 200 um}]
-  base: rigid
-  chambers: [{name: air, between: [foil, base]}]
-mesh: {element: T6, size: 0.12 m}
-stages:
-  up: {run: inflate, from: mesh, gauge_pressure: {air: 3 kPa}, prestress: {all: 100 N/m}}
-)" + stages);
+    write(foil_over_base(material, "3 kPa", "", stages));
   }
   double foil(const std::string& stage, const std::string& key) const {
     return summary(stage)["foils"]["foil"].at(json::json_pointer(key)).get<double>();

@@ -16,22 +16,8 @@ class Materials : public InFolder {
 protected:
   void file(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
 
-  // A small cushion of one foil over a base, inflated from flat; `material` are the keys of its foil.
-  void inflated(const std::string& material, const std::string& pressure, const std::string& more = "") const {
-    write(R"(pneuma: 1
-materials: {foil: {)" +
-          material + R"(}}
-site: {gravity: off)" +
-          more + R"(}
-cushion:
-  plan: {shape: circle, radius: 0.5 m}
-  foils: [{name: foil, material: foil, thickness: 200 um}]
-  base: rigid
-  chambers: [{name: air, between: [foil, base]}]
-mesh: {element: T6, size: 0.12 m}
-stages:
-  up: {run: inflate, from: mesh, gauge_pressure: {air: )" +
-          pressure + "}, prestress: {all: 100 N/m}}\n");
+  void inflated(const std::string& material, const std::string& pressure, const std::string& site = "") const {
+    write(foil_over_base(material, pressure, site));
   }
 
   // Points of a linear foil, E 900 MPa and nu 0.45, as a machine of strains and nominal stresses would give them.
