@@ -255,7 +255,7 @@ std::string wanted(const KeySet& set) {
   return fmt::format("{} of: {}", count, joined(set.keys));
 }
 
-// What a value is called in messages: the last key of its path, with the one before for list items.
+// What a value is called in messages: the last key of its path, with those before for list items.
 std::string title(const std::string& path) {
   if (path.empty()) return "the file";
   const auto dot = path.rfind('.');
@@ -263,9 +263,7 @@ std::string title(const std::string& path) {
   const bool is_position =
       !last.empty() && std::all_of(last.begin(), last.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   if (!is_position || dot == std::string::npos) return "`" + last + "`";
-  const auto before = path.rfind('.', dot - 1);
-  const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  return fmt::format("entry {} of `{}`", std::stoi(last) + 1, path.substr(first, dot - first));
+  return fmt::format("entry {} of {}", std::stoi(last) + 1, title(path.substr(0, dot)));
 }
 
 bool inside(const Range& range, double value) {

@@ -22,6 +22,8 @@ using schema::text_of;
 
 namespace {
 
+constexpr double celsius = 273.15; // of 0 degC, K
+
 // stage.yaml carries the points of a table.
 constexpr std::size_t most_points = 10'000;
 
@@ -129,8 +131,8 @@ Material Builder::material_of(const std::string& name, const Value& value) {
     for (const Value& entry : temperature->items) {
       const double at = number_of(entry, "at");
       if (at == material.at || material.other.contains(at)) {
-        fail(entry["at"]->mark, fmt::format("a second law at {}; `at` of the law itself is {}", text_of(entry, "at"),
-                                            schema::quantity_text(material.at, "K")));
+        fail(entry["at"]->mark, fmt::format("a second law at {}; `at` of the law itself is {:.6g} degC",
+                                            text_of(entry, "at"), material.at - celsius));
       }
       material.other[at] = law_of(value, &entry);
     }
@@ -339,6 +341,9 @@ TableLaw Builder::table_of(const Value& material) {
       const auto at = [&](std::size_t i) { return row.items[i].number; };
       law.points.push_back({at(0), at(1), at(2), at(3), at(4)});
     }
+    if (std::none_of(law.points.begin(), law.points.end(), [](const TableLaw::Point& p) { return p.weight > 0; })) {
+      fail(points->mark, "no point has a weight above 0");
+    }
   }
   if (const Value* points = material["shear_points"]) {
     for (const Value& row : points->items) {
@@ -513,7 +518,6 @@ void Builder::read_points(const std::string& name, std::optional<double> of_site
 void Builder::check_test_temperatures(const Mark& data, const std::array<double, 2>& tests,
                                       std::optional<double> of_site) {
   constexpr double steady = 5, near = 10; // K
-  constexpr double celsius = 273.15;
   const auto [least, most] = tests;
   if (most - least > steady) {
     warn(data, fmt::format("the tests were taken at {:.4g} to {:.4g} degC; a table knows no temperature and takes them "
@@ -531,7 +535,6 @@ void Builder::check_temperature(const Material& material) {
   const double site = workflow_.site.temperature;
   if (!range || (site >= (*range)[0] && site <= (*range)[1])) return;
   const auto stated = workflow_.origins.find("site.temperature");
-  constexpr double celsius = 273.15;
   fail(stated != workflow_.origins.end() ? stated->second : material.mark,
        fmt::format("the site's temperature, {:.4g} degC, is outside the table of the material `{}`: {:.4g} to {:.4g} "
                    "degC",

@@ -446,7 +446,11 @@ const Bad cases[] = {
     {"SameTemperatureTwice",
      elastic,
      "law: elastic, E: 900 MPa, nu: 0.45, temperature: [{at: @23 degC, E: 1 GPa}]",
-     {"a second law at 23 degC; `at` of the law itself is 296.15 K"}},
+     {"a second law at 23 degC; `at` of the law itself is 23 degC"}},
+    {"PointsWithoutWeight",
+     elastic,
+     "law: pd_nurbs, points: @[[0.1, 0.1, 20e6, 20e6, 0], [0.1, -0.04, 20e6, 0, 0]]",
+     {"no point has a weight above 0"}},
     {"OtherNumberOfBranches",
      elastic,
      "law: j2, E: 1 GPa, nu: 0.4, hardening: [{stress: 15 MPa, modulus: 1 MPa}], temperature: [{at: 0 degC, hardening: "
