@@ -21,6 +21,11 @@ Quantity parse_quantity(std::string_view text, const std::string& unit);
 // The shortest text that reads back to the same double, "0.00025 m".
 std::string quantity_text(double value, const std::string& unit);
 
+// A temperature in degC, for messages.
+inline double celsius(double kelvin) {
+  return kelvin - 273.15;
+}
+
 // "a length", "a pressure": what `unit` measures, with an article.
 std::string dimension_of(const std::string& unit);
 

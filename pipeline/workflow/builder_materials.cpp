@@ -13,6 +13,7 @@
 
 namespace pneuma::pipeline::workflow {
 
+using schema::celsius;
 using schema::Node;
 using schema::NodeKind;
 using schema::number_of;
@@ -21,8 +22,6 @@ using schema::suggestion;
 using schema::text_of;
 
 namespace {
-
-constexpr double celsius = 273.15; // of 0 degC, K
 
 // stage.yaml carries the points of a table.
 constexpr std::size_t most_points = 10'000;
@@ -132,7 +131,7 @@ Material Builder::material_of(const std::string& name, const Value& value) {
       const double at = number_of(entry, "at");
       if (at == material.at || material.other.contains(at)) {
         fail(entry["at"]->mark, fmt::format("a second law at {}; `at` of the law itself is {:.6g} degC",
-                                            text_of(entry, "at"), material.at - celsius));
+                                            text_of(entry, "at"), celsius(material.at)));
       }
       material.other[at] = law_of(value, &entry);
     }
@@ -522,11 +521,11 @@ void Builder::check_test_temperatures(const Mark& data, const std::array<double,
   if (most - least > steady) {
     warn(data, fmt::format("the tests were taken at {:.4g} to {:.4g} degC; a table knows no temperature and takes them "
                            "as one: give each temperature a table of its own",
-                           least - celsius, most - celsius));
+                           celsius(least), celsius(most)));
   } else if (of_site && (*of_site < least - near || *of_site > most + near)) {
     warn(data, fmt::format("the tests were taken at {:.4g} degC and the site has {:.4g} degC; a table knows no "
                            "temperature and keeps what it is fitted to",
-                           0.5 * (least + most) - celsius, *of_site - celsius));
+                           celsius(0.5 * (least + most)), celsius(*of_site)));
   }
 }
 
@@ -538,7 +537,7 @@ void Builder::check_temperature(const Material& material) {
   fail(stated != workflow_.origins.end() ? stated->second : material.mark,
        fmt::format("the site's temperature, {:.4g} degC, is outside the table of the material `{}`: {:.4g} to {:.4g} "
                    "degC",
-                   site - celsius, material.name, (*range)[0] - celsius, (*range)[1] - celsius));
+                   celsius(site), material.name, celsius((*range)[0]), celsius((*range)[1])));
 }
 
 } // namespace pneuma::pipeline::workflow

@@ -509,13 +509,20 @@ double reach(const YieldTable& table, StrainRange range) {
                    around_yield(table, range.min, range.min)[0]});
 }
 
-// The table of a law that yields in this range: over r with spans that grow with it.
-PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, const NurbsOptions& options, double time) {
+// The table of a law that yields, and where it was asked for.
+struct BeyondYield {
+  YieldTable table;
+  std::vector<Vec2> strains;
+  double uncovered = 0;
+};
+
+// Over r up to `reach` > 1 with spans that grow with it.
+BeyondYield fit_beyond_yield(const Law& law, YieldTable yield, double reach, const NurbsOptions& options, double time) {
   const int spans = options.net[0] - options.degree;
   std::vector<double> in_r;
   std::vector<double> in_v;
   for (int i = 0; i <= spans; ++i) {
-    in_r.push_back(std::pow(reach(yield, range), static_cast<double>(i) / spans));
+    in_r.push_back(std::pow(reach, static_cast<double>(i) / spans));
     in_v.push_back(-1 + 2.0 * i / spans);
   }
   // in the middles of the parts: not at v = -1 and 1, where a direction is lost
@@ -551,12 +558,18 @@ PdFit fit_beyond_yield(const Law& law, YieldTable yield, StrainRange range, cons
       nurbs::fit(nurbs::from_breaks(options.degree + 1, in_r), nurbs::from_breaks(options.degree + 1, in_v),
                  observations, {smoothing_of_law, 3, true, false, 2});
   yield.beyond = std::move(beyond.surface);
+  return {std::move(yield), std::move(strains), beyond.residuals.uncovered};
+}
+
+// A table that is no more than that, and how it follows the law.
+PdFit with_report(const Law& law, BeyondYield beyond, StrainRange range, const NurbsOptions& options, double time) {
   auto table = std::make_shared<PdTable>();
-  table->yield = std::move(yield);
+  table->yield = std::move(beyond.table);
   table->domain.range = range;
   PdFit fit{std::move(table), {}};
   fit.report.smoothing = smoothing_of_law;
-  fit.report.uncovered = beyond.residuals.uncovered;
+  fit.report.uncovered = beyond.uncovered;
+  std::vector<Vec2> strains = std::move(beyond.strains);
   // where it was not fitted, too, and at the corners of the range
   const std::vector<double> places = places_in(strain_breaks(range, options.net[0], {}));
   const std::vector<Vec2> between = pairs(places, places);
@@ -734,10 +747,10 @@ PdFit fit_pd_nurbs(const Law& law, const NurbsOptions& options, double time, std
   check_isotropic(law, range, time);
   std::optional<YieldTable> yield = options.potential ? until_yield(law) : std::nullopt;
   std::optional<double> knee = options.knee;
-  if (yield && reach(*yield, range) > 1) {
-    PdFit fit = fit_beyond_yield(law, *yield, range, options, time);
-    if (points.empty()) return fit;
-    yield = fit.table->yield;
+  if (const double largest = yield ? reach(*yield, range) : 0; largest > 1) {
+    BeyondYield beyond = fit_beyond_yield(law, *yield, largest, options, time);
+    if (points.empty()) return with_report(law, std::move(beyond), range, options, time);
+    yield = std::move(beyond.table);
   } else {
     yield.reset();
     if (!knee) knee = best_knee(law, range, options.net[0] - options.degree, time);

@@ -15,14 +15,14 @@ namespace pneuma::solver::material {
 // the curve of yield is the circle r = 1: no knots of a surface over the strains themselves follow it, and one that
 // swings about the corner of the stresses there does not rise with the strain. So, over r and v = x / r (an isotropic
 // law knows the sign of y by nothing), with W1(v) the elastic potential on the curve:
-//   W = r^2 W1(v) up to the curve,   W = (2 r - 1) W1(v) + beyond(r, v) past it, beyond(1, v) = d beyond / dr (1, v) =
-//   0.
+//   W = r^2 W1(v) up to the curve,   W = (2 r - 1) W1(v) + beyond(r, v) past it,
+//   beyond(1, v) = d beyond / dr (1, v) = 0.
 // Stresses and, along the curve, tangents are continuous.
 struct YieldTable {
   Elasticity elasticity;
   double yield = 0; // Pa
-  bool logarithmic =
-      false; // strains are ln(C)/2, stresses Kirchhoff's; else Green-Lagrange's and second Piola-Kirchhoff
+  // Strains are ln(C)/2 and stresses Kirchhoff's; otherwise Green-Lagrange's and second Piola-Kirchhoff.
+  bool logarithmic = false;
   geometry::nurbs::Surface<1> beyond; // J/m3, over (r, v), 1 <= r, -1 <= v <= 1
 
   // x and y by the sum and the difference of the strains.

@@ -11,6 +11,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/schema/quantity.h"
 #include "stages/common/summary.h"
 
 namespace pneuma::stages::common {
@@ -19,9 +20,9 @@ namespace {
 
 namespace workflow = pipeline::workflow;
 namespace material = solver::material;
+using pipeline::schema::celsius;
 
 constexpr double megapascal = 1e6;
-constexpr double freezing = 273.15; // K
 
 [[noreturn]] void refuse(const workflow::Material& m, const std::string& what) {
   throw base::InputError(fmt::format("{}: material `{}`: {}", to_string(m.mark), m.name, what));
@@ -54,8 +55,8 @@ public:
   MaterialLaw make(const workflow::Material& m) const {
     const auto range = workflow::temperatures_of(m);
     if (range && !(temperature_ >= (*range)[0] && temperature_ <= (*range)[1])) {
-      refuse(m, fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", (*range)[0] - freezing,
-                            (*range)[1] - freezing, temperature_ - freezing));
+      refuse(m, fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", celsius((*range)[0]),
+                            celsius((*range)[1]), celsius(temperature_)));
     }
     return std::visit([&](const auto& law) { return make(m, law); }, workflow::law_at(m, temperature_));
   }
@@ -105,7 +106,7 @@ private:
     if (!hardening) {
       refuse(m, fmt::format("at {:.4g} degC, between two temperatures of its table, a branch of the hardening does not "
                             "lead to the next",
-                            temperature_ - freezing));
+                            celsius(temperature_)));
     }
     flow.hardening = *hardening;
     if (law.viscosity) {

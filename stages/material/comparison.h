@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "pipeline/schema/quantity.h"
 #include "stages/material/curves.h"
 
 namespace pneuma::stages::material {
@@ -13,9 +14,7 @@ struct TestPoint {
   double weight = 1;
 };
 
-inline double celsius(double kelvin) {
-  return kelvin - 273.15;
-}
+using pipeline::schema::celsius;
 
 // What a test machine measured of one piece, in the order of time.
 struct TestCurve {
@@ -26,9 +25,9 @@ struct TestCurve {
 };
 
 // Reads a file of test data (pipeline/test_data), one test a file. The ratio of its stresses is their least-squares
-// one, the larger 1; below 1 % the smaller is taken to be none, as where it was not measured. A file
-// of shear strains without others is a test in shear. Warns of what is implausible. Throws InputError with every fault,
-// each with file, line and column, and where the stresses have no common ratio.
+// one, the larger 1; below 1 % the smaller is taken to be none, as where it was not measured. A file of shear strains
+// without others is a test in shear. Warns of what is implausible. Throws InputError with every fault, each with file,
+// line and column, and where the stresses have no common ratio.
 TestCurve read_test(const std::filesystem::path& file);
 
 // How far a law's stresses are from those of a test: the piece is pulled through the measured strains along the axis of
