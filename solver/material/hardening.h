@@ -59,15 +59,28 @@ struct Hardening {
   }
 };
 
-// A branch as its user states it: from this yield stress on, d stress / d alpha; both Pa.
+// A branch as its user states it: from this yield stress on, its modulus; both Pa.
 struct HardeningBranch {
   double stress = 0;
-  double modulus = 0;
+  double modulus = 0; // d stress / d alpha (plastic modulus), unless it is said to be another
 };
 
-// The table of branches, the first of which begins at alpha = 0 and whose moduli lead from stress to stress; the last
-// goes on without end. None if a yield stress is not positive, if a branch does not lead to the next one's stress (its
-// modulus is zero or of the other sign), or if the last one softens (the yield stress would end below zero).
+// The plastic modulus of a branch whose d stress / d strain under tension is given, Pa: 1/Et = 1/E + 1/K.
+inline double plastic_modulus(double tangent, double youngs_modulus) noexcept {
+  return youngs_modulus * tangent / (youngs_modulus - tangent);
+}
+
+// The plastic strain over which a branch leads to the next one's yield stress; none where it does not: its modulus is
+// zero or of the other sign.
+inline std::optional<double> length_of(const HardeningBranch& branch, const HardeningBranch& next) noexcept {
+  const double length = (next.stress - branch.stress) / branch.modulus;
+  if (!(length > 0 && length < std::numeric_limits<double>::infinity())) return std::nullopt;
+  return length;
+}
+
+// The table of branches, the first of which begins at alpha = 0 and whose plastic moduli lead from stress to stress;
+// the last goes on without end. None if there is no branch, a yield stress is not positive, a branch does not lead to
+// the next one's stress or the last one softens (the yield stress would end below zero).
 inline std::optional<Hardening> piecewise_linear(std::span<const HardeningBranch> stated) {
   if (stated.empty()) return std::nullopt;
   std::vector<Hardening::Branch> branches;
@@ -77,9 +90,9 @@ inline std::optional<Hardening> piecewise_linear(std::span<const HardeningBranch
     if (!(b.stress > 0)) return std::nullopt;
     branches.push_back({alpha, b.stress, b.modulus});
     if (i + 1 == stated.size()) break;
-    const double length = (stated[i + 1].stress - b.stress) / b.modulus;
-    if (!(length > 0 && length < std::numeric_limits<double>::infinity())) return std::nullopt;
-    alpha += length;
+    const std::optional<double> to_next = length_of(b, stated[i + 1]);
+    if (!to_next) return std::nullopt;
+    alpha += *to_next;
   }
   if (!(branches.back().modulus >= 0)) return std::nullopt;
   return Hardening{std::make_shared<const std::vector<Hardening::Branch>>(std::move(branches))};

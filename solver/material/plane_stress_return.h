@@ -17,6 +17,8 @@ struct Elasticity {
 
   double sum_modulus() const noexcept { return youngs_modulus / (1 - poissons_ratio); }
   double shear_modulus() const noexcept { return 0.5 * youngs_modulus / (1 + poissons_ratio); }
+  // plastic modulus above which the return has one solution, Pa (see plane_stress_return)
+  double steepest_softening() const noexcept { return -std::min(0.5 * sum_modulus(), 3 * shear_modulus()); }
   // e33 of an elastic strain, from the stress-free thickness
   double thickness_strain(double sum) const noexcept { return -poissons_ratio / (1 - poissons_ratio) * sum; }
   // stored energy of a stress, J/m3; difference_squared = (s11 - s22)^2 + 4 s12^2
@@ -44,7 +46,7 @@ struct PlasticStep {
 //   sigma_eq^2 (gamma) = A / (1 + a gamma)^2 + B / (1 + b gamma)^2,   a = sum_modulus / 2, b = 3 G,
 //   A = (s11 + s22)^2 / 4, B = 3/4 [(s11 - s22)^2 + 4 s12^2] of the trial,
 // and gamma solves sigma_eq(gamma) = flow stress(alpha + gamma sigma_eq(gamma), rate). The left side falls with gamma
-// and gamma sigma_eq grows, so that hardening (and softening down to a modulus of -min(a, b)) leaves one root. Newton
+// and gamma sigma_eq grows, so that hardening (and softening above a modulus of -min(a, b)) leaves one root. Newton
 // on 1 - flow stress / sigma_eq, convex as 1 / sigma_eq is concave (a mean of two linear functions), from below; a
 // bracket and bisection of its logarithm catch corners and rates of any size. dt = 0: a viscous material does not flow.
 inline PlasticStep plane_stress_return(const Elasticity& elasticity, const Flow& flow, double sum,

@@ -95,12 +95,12 @@ struct Flow {
     return hardening.branches ? hardening.stress(alpha) + threshold_shift() : hardening.stress(alpha);
   }
 
-  // Whether sigma_0 >= 0 for every alpha: of a threshold and a table that softens by more than it, not. Such a flow has
-  // no meaning and its return no root.
+  // Whether sigma_0 > 0 for every alpha > 0: of a threshold and a table that softens by more than it, not. Such a flow
+  // has no meaning and its return no root.
   bool onset_stays_positive() const noexcept {
     return !hardening.branches ||
-           std::all_of(hardening.branches->begin(), hardening.branches->end(),
-                       [this](const Hardening::Branch& b) { return b.stress + threshold_shift() >= 0; });
+           std::all_of(hardening.branches->begin() + 1, hardening.branches->end(),
+                       [this](const Hardening::Branch& b) { return b.stress + threshold_shift() > 0; });
   }
 
   // Stress at the end of a step in which alpha grows by `increment` and its derivative by that; time_ratio = mu / dt
