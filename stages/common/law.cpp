@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
 #include "pipeline/schema/quantity.h"
+#include "solver/material/judgement.h"
 #include "stages/common/summary.h"
 
 namespace pneuma::stages::common {
@@ -24,8 +27,118 @@ using pipeline::schema::celsius;
 
 constexpr double megapascal = 1e6;
 
+// The place in the user's file of a parameter (as `material::Fault` names it) of the law that a material has at a
+// temperature: the material's.
+std::string place_of(const workflow::Material& m, const std::string&, double) {
+  return to_string(m.mark);
+}
+
+std::string line_of(const std::string& place, const workflow::Material& m, const std::string& what) {
+  return fmt::format("{}: material `{}`: {}", place, m.name, what);
+}
+
 [[noreturn]] void refuse(const workflow::Material& m, const std::string& what) {
-  throw base::InputError(fmt::format("{}: material `{}`: {}", to_string(m.mark), m.name, what));
+  throw base::InputError(line_of(to_string(m.mark), m, what));
+}
+
+void refuse(const std::vector<std::string>& errors) {
+  if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
+}
+
+// Laws as the solver judges them.
+material::StVenantKirchhoff stated(const workflow::ElasticLaw& law) {
+  return {law.E, law.nu};
+}
+
+material::Orthotropic stated(const workflow::OrthotropicLaw& law) {
+  return {law.E1, law.E2, law.nu12, law.G12};
+}
+
+material::MooneyRivlin stated(const workflow::MooneyRivlinLaw& law) {
+  return {law.C1, law.C2};
+}
+
+material::Ogden stated(const workflow::OgdenLaw& law) {
+  material::Ogden ogden;
+  ogden.count = static_cast<int>(law.terms.size());
+  for (std::size_t i = 0; i < std::min(law.terms.size(), ogden.terms.size()); ++i) {
+    ogden.terms[i] = {law.terms[i].mu, law.terms[i].alpha};
+  }
+  return ogden;
+}
+
+material::Plasticity stated(const workflow::J2Law& law) {
+  material::Plasticity plasticity;
+  plasticity.elasticity = {law.E, law.nu};
+  for (const workflow::HardeningBranch& branch : law.hardening) {
+    plasticity.hardening.push_back({branch.stress, branch.modulus});
+  }
+  const bool is_plastic = law.modulus == workflow::ModulusKind::plastic;
+  plasticity.modulus = is_plastic ? material::ModulusKind::plastic : material::ModulusKind::tangent;
+  plasticity.softening = law.softening;
+  if (law.viscosity) {
+    const bool is_peric = law.viscosity->model == workflow::ViscositySettings::Model::peric;
+    plasticity.viscosity = {is_peric ? material::Overstress::peric : material::Overstress::perzyna, law.viscosity->mu,
+                            law.viscosity->epsilon, law.viscosity->threshold};
+  }
+  return plasticity;
+}
+
+// What is wrong with the law of a material at a temperature that it has values for; tables show it when they are
+// fitted.
+std::vector<material::Fault> faults_at(const workflow::Material& m, double temperature) {
+  return std::visit(
+      []<class L>(const L& law) -> std::vector<material::Fault> {
+        if constexpr (std::is_same_v<L, workflow::TableLaw>) {
+          return {};
+        } else {
+          return material::faults(stated(law));
+        }
+      },
+      workflow::law_at(m, temperature));
+}
+
+std::string line_of(const workflow::Material& m, const material::Fault& fault, double temperature) {
+  std::string at;
+  if (!m.other.empty() && temperature != m.at) {
+    at = fmt::format("at {:.4g} degC{}: ", celsius(temperature),
+                     m.other.contains(temperature) ? "" : ", between two temperatures of its table");
+  }
+  return line_of(place_of(m, fault.parameter, temperature), m, at + fault.message);
+}
+
+// Why a material has no values for a temperature; empty: it has.
+std::string outside_of(const workflow::Material& m, double temperature) {
+  const auto range = workflow::temperatures_of(m);
+  if (!range || (temperature >= (*range)[0] && temperature <= (*range)[1])) return "";
+  return fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", celsius((*range)[0]),
+                     celsius((*range)[1]), celsius(temperature));
+}
+
+// Errors of a material at its own temperature, at the others of its table and at `temperature`; warns of the rest. What
+// is the same at several is told once.
+std::vector<std::string> errors_of(const workflow::Material& m, double temperature) {
+  std::set<std::pair<std::string, std::string>> told; // parameter, message
+  std::vector<std::string> errors;
+  const auto judge = [&](double at) {
+    for (const material::Fault& fault : faults_at(m, at)) {
+      if (!told.emplace(fault.parameter, fault.message).second) continue;
+      const std::string line = line_of(m, fault, at);
+      if (fault.error) {
+        errors.push_back(line);
+      } else {
+        base::warn(line);
+      }
+    }
+  };
+  judge(m.at);
+  for (const auto& [at, law] : m.other) judge(at);
+  if (!errors.empty()) return errors; // between two laws of which one is none is none
+  if (const std::string outside = outside_of(m, temperature); !outside.empty()) {
+    return {line_of(to_string(m.mark), m, outside)};
+  }
+  judge(temperature);
+  return errors;
 }
 
 material::Law with_tension_field(const material::Law& law) {
@@ -40,11 +153,6 @@ material::Law with_tension_field(const material::Law& law) {
       law);
 }
 
-// d stress / d plastic strain of a branch whose d stress / d strain under tension is given: 1/Et = 1/E + 1/K.
-double plastic_modulus(double tangent, double E) {
-  return E * tangent / (E - tangent);
-}
-
 // What makes the laws of one set of materials at one temperature.
 class Maker {
 public:
@@ -53,70 +161,26 @@ public:
 
   // Without tension field.
   MaterialLaw make(const workflow::Material& m) const {
-    const auto range = workflow::temperatures_of(m);
-    if (range && !(temperature_ >= (*range)[0] && temperature_ <= (*range)[1])) {
-      refuse(m, fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", celsius((*range)[0]),
-                            celsius((*range)[1]), celsius(temperature_)));
+    if (const std::string outside = outside_of(m, temperature_); !outside.empty()) refuse(m, outside);
+    std::vector<std::string> errors;
+    for (const material::Fault& fault : faults_at(m, temperature_)) {
+      if (fault.error) errors.push_back(line_of(m, fault, temperature_));
     }
+    refuse(errors);
     return std::visit([&](const auto& law) { return make(m, law); }, workflow::law_at(m, temperature_));
   }
 
 private:
-  MaterialLaw make(const workflow::Material&, const workflow::ElasticLaw& law) const {
-    return {material::StVenantKirchhoff{law.E, law.nu}, {}, {}};
+  template <class L>
+  MaterialLaw make(const workflow::Material&, const L& law) const {
+    return {stated(law), {}, {}};
   }
 
-  MaterialLaw make(const workflow::Material&, const workflow::OrthotropicLaw& law) const {
-    return {material::Orthotropic{law.E1, law.E2, law.nu12, law.G12}, {}, {}};
-  }
-
-  MaterialLaw make(const workflow::Material&, const workflow::MooneyRivlinLaw& law) const {
-    return {material::MooneyRivlin{law.C1, law.C2}, {}, {}};
-  }
-
-  MaterialLaw make(const workflow::Material& m, const workflow::OgdenLaw& law) const {
-    material::Ogden ogden;
-    for (const workflow::OgdenLaw::Term& term : law.terms) {
-      ogden.terms[static_cast<std::size_t>(ogden.count++)] = {term.mu, term.alpha};
-    }
-    // a foil is not stretched further, and constants from tests seldom hold beyond
-    constexpr double least = 0.25, most = 4;
-    constexpr const char* names[] = {"uniaxial tension", "equibiaxial tension", "pure shear"};
-    std::vector<std::string> where;
-    for (const material::Instability& found : material::instabilities(ogden, least, most)) {
-      where.push_back(fmt::format("in {} at stretches from {:.3g} to {:.3g}",
-                                  names[static_cast<std::size_t>(found.pull)], found.from, found.to));
-    }
-    if (!where.empty()) {
-      refuse(m, fmt::format("its Ogden constants are unstable, more strain needs less stress, {}; terms whose mu and "
-                            "alpha have one sign are stable",
-                            fmt::join(where, ", ")));
-    }
-    return {ogden, {}, {}};
-  }
-
-  MaterialLaw make(const workflow::Material& m, const workflow::J2Law& law) const {
-    std::vector<material::HardeningBranch> branches;
-    for (const workflow::HardeningBranch& branch : law.hardening) {
-      const bool is_plastic = law.modulus == workflow::ModulusKind::plastic;
-      branches.push_back({branch.stress, is_plastic ? branch.modulus : plastic_modulus(branch.modulus, law.E)});
-    }
-    material::Flow flow;
-    const std::optional<material::Hardening> hardening = material::piecewise_linear(branches);
-    if (!hardening) {
-      refuse(m, fmt::format("at {:.4g} degC, between two temperatures of its table, a branch of the hardening does not "
-                            "lead to the next",
-                            celsius(temperature_)));
-    }
-    flow.hardening = *hardening;
-    if (law.viscosity) {
-      const bool is_peric = law.viscosity->model == workflow::ViscositySettings::Model::peric;
-      flow.viscosity = {is_peric ? material::Overstress::peric : material::Overstress::perzyna, law.viscosity->mu,
-                        law.viscosity->epsilon, law.viscosity->threshold};
-    }
-    const material::Elasticity elasticity{law.E, law.nu};
-    if (law.logarithmic) return {material::Logarithmic{elasticity, flow}, {}, {}};
-    return {material::J2{elasticity, flow}, {}, {}};
+  MaterialLaw make(const workflow::Material&, const workflow::J2Law& law) const {
+    const material::Plasticity plasticity = stated(law);
+    const material::Flow flow = material::flow_of(plasticity);
+    if (law.logarithmic) return {material::Logarithmic{plasticity.elasticity, flow}, {}, {}};
+    return {material::J2{plasticity.elasticity, flow}, {}, {}};
   }
 
   MaterialLaw make(const workflow::Material& m, const workflow::TableLaw& law) const {
@@ -196,6 +260,15 @@ std::vector<std::string> warnings_of(const std::string& name, const MaterialLaw&
 }
 
 } // namespace
+
+void check_laws(const std::map<std::string, workflow::Material>& materials, double temperature) {
+  std::vector<std::string> errors;
+  for (const auto& [name, m] : materials) {
+    const std::vector<std::string> more = errors_of(m, temperature);
+    errors.insert(errors.end(), more.begin(), more.end());
+  }
+  refuse(errors);
+}
 
 MaterialLaw law_of(const std::map<std::string, workflow::Material>& materials, const std::string& name,
                    double temperature) {

@@ -23,9 +23,14 @@ struct MaterialLaw {
 
 using MaterialLaws = std::map<std::string, MaterialLaw>; // by the name of the material
 
+// Judges the laws of these materials (solver/material/judgement.h) at every temperature of their tables and at
+// `temperature`, K; fits no table. Warns; throws InputError with all errors, a line each with its place in the user's
+// file.
+void check_laws(const std::map<std::string, pipeline::workflow::Material>& materials, double temperature);
+
 // The law of one of these materials at a temperature, K; its table is fitted, which takes a second or less. Throws
-// InputError, with the place in the user's file, where the material has no values for the temperature, a table cannot
-// be fitted to its points or a foil of Ogden's law is unstable at stretches from 1/4 to 4.
+// InputError, with the place in the user's file, where the material has no values for the temperature, its law there
+// has faults (all are told) or a table cannot be fitted to its points.
 MaterialLaw law_of(const std::map<std::string, pipeline::workflow::Material>& materials, const std::string& name,
                    double temperature);
 

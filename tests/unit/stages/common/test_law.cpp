@@ -145,6 +145,63 @@ TEST(BadLaw, UnstableOgdenConstantsAreToldWithWhereTheyAre) {
                         "stress, in uniaxial tension at stretches from 0.25 to 0.333, "));
 }
 
+TEST(BadLaw, TellsAllItsFaults) {
+  workflow::J2Law law = etfe();
+  law.E = 0;
+  law.hardening[1].stress = -1;
+  EXPECT_EQ(message_of<base::InputError>([&] { made_of(material_of(law)); }),
+            "etfe.yaml:3:1: material `foil`: `E` must be positive, not 0 MPa\n"
+            "etfe.yaml:3:1: material `foil`: `stress` must be positive, not -1e-06 MPa");
+}
+
+std::string told_of(const std::map<std::string, Material>& materials, double temperature = room) {
+  return message_of<base::InputError>([&] { check_laws(materials, temperature); });
+}
+
+TEST(CheckOfLaws, TellsTheFaultsOfAllMaterialsAtAllTemperaturesOnce) {
+  workflow::J2Law law = etfe();
+  law.hardening[1].stress = 15e6;
+  Material foil = material_of(law);
+  law.nu = 0.6;
+  foil.other[room + 20] = law;
+  Material other = material_of(workflow::MooneyRivlinLaw{-1e6, 0});
+  other.name = "other";
+  const std::map<std::string, Material> materials = {{"foil", foil}, {"other", other}};
+  EXPECT_EQ(told_of(materials),
+            "etfe.yaml:3:1: material `foil`: yield stresses must rise from branch to branch: 15 MPa after 15 MPa\n"
+            "etfe.yaml:3:1: material `foil`: at 43 degC: `nu` must be above -1, up to 0.5, not 0.6\n"
+            "etfe.yaml:3:1: material `other`: `C1` must be positive, not -1 MPa");
+}
+
+TEST(CheckOfLaws, JudgesTheLawBetweenTwoTemperatures) {
+  workflow::J2Law law = etfe();
+  law.softening = true;
+  Material foil = material_of(law);
+  law.hardening = {{21e6, -72e6}, {15e6, 0}};
+  foil.other[room + 20] = law;
+  EXPECT_EQ(told_of({{"foil", foil}}), "nothing was thrown");
+  const char* message =
+      "etfe.yaml:3:1: material `foil`: at 33 degC, between two temperatures of its table: a branch of modulus 0 MPa "
+      "never comes to the next one's yield stress, 18 MPa; only the last branch may be level";
+  EXPECT_EQ(told_of({{"foil", foil}}, room + 10), message);
+  EXPECT_EQ(message_of<base::InputError>([&] { made_of(foil, room + 10); }), message);
+  EXPECT_EQ(told_of({{"foil", foil}}, room - 1),
+            "etfe.yaml:3:1: material `foil`: its values are for 23 to 43 degC, not 22 degC");
+}
+
+TEST(CheckOfLaws, WarnsOfWhatIsNoError) {
+  testing::internal::CaptureStderr();
+  check_laws({{"foil", material_of(workflow::OgdenLaw{{{6e6, 2}, {-1e6, 2}}})}}, room);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("etfe.yaml:3:1: material `foil`: `mu` -1 MPa and `alpha` 2 have different signs"));
+}
+
+TEST(CheckOfLaws, FitsNoTable) {
+  workflow::TableLaw law;
+  law.points = {{0.01, 0.01, 9e6, 9e6, 1}};
+  EXPECT_NO_THROW(check_laws({{"foil", material_of(law)}}, room));
+}
+
 TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
   workflow::TableLaw law;
   law.points = {{0.01, 0.01, 9e6, 9e6, 1}, {0.01, 0.01, 9e6, 9e6, 1}};
