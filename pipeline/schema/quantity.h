@@ -15,8 +15,13 @@ struct Quantity {
 
 // Reads "250 um" as a quantity of the dimension of `unit` (SI: "m", "Pa", "K", "rad", ...) and converts it to `unit`.
 // Number and unit are read apart, so that "23 degC" is 296.15 K; the unit's ratio to the wanted one must be a pure
-// number, so that "5 1/m" is no length.
-Quantity parse_quantity(std::string_view text, const std::string& unit);
+// number, so that "5 1/m" is no length. Units are those of UDUNITS-2, and psf, mmH2O and inH2O; a unit holds no number
+// but exponents and a leading "1/", so that "3 m 20" is not 60 m. The error says what was likely meant, or else names
+// `example`, a good value of the key (empty: one of the dimension).
+Quantity parse_quantity(std::string_view text, const std::string& unit, const std::string& example = "");
+
+// A value that was taken, for messages: "400000 Pa", "296.15 K (23 degC)", "0.523599 rad (30 deg)", "0.003 (0.3 %)".
+std::string shown(double si_value, const std::string& unit);
 
 // The shortest text that reads back to the same double, "0.00025 m".
 std::string quantity_text(double value, const std::string& unit);
