@@ -344,13 +344,14 @@ std::optional<double> sum_or_result(const std::string& text, const ut_unit* targ
     const Quantity result = in_unit(number, replaced(name, {" /", "/", " *", "*", "* ", "*"}), target);
     return result.error.empty() ? std::optional(result.value) : std::nullopt;
   }
-  const std::string rest = name.substr(at);
-  const bool in_centimetres = before == "m" && rest.size() == 2 && is_digit(rest[1]);
+  const bool in_centimetres = before == "m" && at + 2 == name.size() && is_digit(name[at + 1]);
+  const std::string rest = name.substr(at) + (in_centimetres ? " cm" : "");
   const Quantity first = read(fmt::format("{} {}", text.substr(0, end), before), target);
   const Quantity one = read(fmt::format("1 {}", before), target);
-  const Quantity second = read(in_centimetres ? rest + " cm" : rest, target);
-  if (!first.error.empty() || !second.error.empty() || second.value >= one.value) return std::nullopt;
-  return first.value + std::copysign(second.value, number);
+  const Quantity second = read(rest, target);
+  const std::optional<double> more = second.error.empty() ? second.value : sum_or_result(rest, target);
+  if (!first.error.empty() || !one.error.empty() || !more || *more >= one.value) return std::nullopt;
+  return first.value + std::copysign(*more, number);
 }
 
 // A value in the unit that is spoken of.

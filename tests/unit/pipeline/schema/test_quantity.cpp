@@ -12,6 +12,11 @@
 
 #include "pipeline/schema/spelling.h"
 
+// UDUNITS 2.2.28 leaks a name in front of a syntax error.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:utlex";
+}
+
 namespace pneuma::pipeline::schema {
 namespace {
 
@@ -159,6 +164,7 @@ TEST(Quantity, WhatWasLikelyMeantIsSaid) {
            {"3 m 20 cm", "m", "has a number in its unit; did you mean `3.2 m`?"},
            {"5 ft 6 in", "m", "has a number in its unit; did you mean `1.6764 m`?"},
            {"30°15'", "rad", "has a number in its unit; did you mean `30.25 deg`?"},
+           {"30° 15' 36\"", "rad", "has a number in its unit; did you mean `30.26 deg`?"},
            {"200 um 2", "m", "has a number in its unit; did you mean `200 um`?"},
            {"200 um 2", "m2", "has a number in its unit; did you mean `200 um2`?"},
            {"16 N/mm 2", "Pa", "has a number in its unit; did you mean `16 N/mm2`?"},
@@ -280,22 +286,21 @@ TEST(Quantity, WhatIsReadHasOneNumberAndAUnitWithoutAny) {
   const std::vector<std::string> kinds = {"m", "Pa", "K", "rad", "1", "N/m", "K-1", "kg/m3"};
   int accepted = 0;
   for (int i = 0; i < 20000; ++i) {
-    std::string text = i % 4 == 0 ? "" : "5 ";
-    for (std::size_t n = 1 + below(5); n > 0; --n) text += pieces[below(pieces.size())];
-    for (const std::string& kind : kinds) {
-      const Quantity read = parse_quantity(text, kind);
-      EXPECT_LT(read.error.size(), 300U);
-      for (const std::string& guess : guesses_in(read.error)) EXPECT_EQ(parse_quantity(guess, kind).error, "") << text;
-      if (!read.error.empty()) continue;
-      ++accepted;
-      EXPECT_TRUE(holds_one_number(text, kind)) << text << " as " << kind;
-      if (kind == "K") continue;
-      char* end = nullptr;
-      const double number = std::strtod(text.c_str(), &end);
-      EXPECT_DOUBLE_EQ(read.value, number * parse_quantity("1 " + std::string(end), kind).value) << text;
-    }
+    const std::string& kind = kinds[below(kinds.size())];
+    std::string text = i % 4 == 0 ? "" : i % 4 == 1 ? "5 " : "5 " + kind;
+    for (std::size_t n = 1 + below(3); n > 0; --n) text += pieces[below(pieces.size())];
+    const Quantity read = parse_quantity(text, kind);
+    EXPECT_LT(read.error.size(), 300U);
+    for (const std::string& guess : guesses_in(read.error)) EXPECT_EQ(parse_quantity(guess, kind).error, "") << text;
+    if (!read.error.empty()) continue;
+    ++accepted;
+    EXPECT_TRUE(holds_one_number(text, kind)) << text << " as " << kind;
+    if (kind == "K") continue; // degC has an offset
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str() + text.find_first_of("+-.0123456789"), &end);
+    EXPECT_DOUBLE_EQ(read.value, number * parse_quantity("1 " + std::string(end), kind).value) << text;
   }
-  EXPECT_GT(accepted, 500);
+  EXPECT_GT(accepted, 300);
 }
 
 TEST(Quantity, TextReadsBackToTheSameBits) {
