@@ -405,9 +405,9 @@ Quantity parse_quantity(std::string_view text, const std::string& unit, const st
   return wrong(result.error, guess.empty() ? such_as : fmt::format("did you mean {}?", guess));
 }
 
-std::string shown(double si_value, const std::string& unit) {
-  const std::string in_si = fmt::format("{:.6g}{}", si_value, unit == "1" ? "" : " " + unit);
-  const std::string spoken = in_use(si_value, unit);
+std::string shown(double value, const std::string& unit) {
+  const std::string in_si = fmt::format("{:.6g}{}", value, unit == "1" ? "" : " " + unit);
+  const std::string spoken = in_use(value, unit);
   return spoken == in_si ? in_si : fmt::format("{} ({})", in_si, spoken);
 }
 

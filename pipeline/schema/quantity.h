@@ -20,8 +20,9 @@ struct Quantity {
 // `example`, a good value of the key (empty: one of the dimension).
 Quantity parse_quantity(std::string_view text, const std::string& unit, const std::string& example = "");
 
-// A value that was taken, for messages: "400000 Pa", "296.15 K (23 degC)", "0.523599 rad (30 deg)", "0.003 (0.3 %)".
-std::string shown(double si_value, const std::string& unit);
+// A value in SI that was taken, for messages: "400000 Pa", "296.15 K (23 degC)", "0.523599 rad (30 deg)", "0.003 (0.3
+// %)".
+std::string shown(double value, const std::string& unit);
 
 // The shortest text that reads back to the same double, "0.00025 m".
 std::string quantity_text(double value, const std::string& unit);

@@ -160,6 +160,8 @@ TEST(Quantity, WhatWasLikelyMeantIsSaid) {
            {"+ 5 Pa", "Pa", "has an odd sign; did you mean `5 Pa`?"},
            {"3 m 20", "m", "has a number in its unit; did you mean `3.2 m`?"},
            {"6 m 50", "m", "has a number in its unit; did you mean `6.5 m`?"},
+           {"6 m50", "m", "has a number in its unit; did you mean `6.5 m`?"},
+           {"5 m 3 m", "m", "has a number in its unit; did you mean `5 m`?"},
            {"-3 m 05", "m", "has a number in its unit; did you mean `-3.05 m`?"},
            {"3 m 20 cm", "m", "has a number in its unit; did you mean `3.2 m`?"},
            {"5 ft 6 in", "m", "has a number in its unit; did you mean `1.6764 m`?"},
