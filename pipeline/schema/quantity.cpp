@@ -338,7 +338,7 @@ std::optional<double> sum_or_result(const std::string& text, const ut_unit* targ
   const std::size_t end = read_number(text, number);
   const std::string name = unit_name(text.substr(end));
   const std::size_t at = number_in(name);
-  if (end == 0 || at == 0) return std::nullopt;
+  if (end == 0 || at == 0 || (at == std::string::npos && !holds_named_number(name))) return std::nullopt;
   const std::string_view before = trimmed(std::string_view(name).substr(0, at));
   if (at == std::string::npos || before.ends_with('/') || before.ends_with('*')) {
     const Quantity result = in_unit(number, replaced(name, {" /", "/", " *", "*", "* ", "*"}), target);

@@ -91,6 +91,7 @@ TEST(Quantity, WhatIsWrongIsSaid) {
   };
   for (const Bad& bad : std::initializer_list<Bad>{
            {"250", "m", "`250` has no unit; expected a length such as `250 um` or `6 m`"},
+           {"0.3", "1", "`0.3` has no unit; expected a ratio such as `0.3 %`"},
            {"um", "m", "`um` does not begin with a number; expected a length such as `250 um` or `6 m`"},
            {"", "m", "`` does not begin with a number; expected a length such as `250 um` or `6 m`"},
            {"5 1/m", "m", "`5 1/m` has a unit of another kind; expected a length such as `250 um` or `6 m`"},
