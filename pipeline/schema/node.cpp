@@ -2,21 +2,21 @@
 #include "pipeline/schema/node.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include <cctype>
+#include <string_view>
 
 #include <fmt/format.h>
+
+#include "pipeline/schema/text.h"
 
 namespace pneuma::pipeline::schema {
 
 std::string to_string(const Mark& mark) {
-  return fmt::format("{}:{}:{}", mark.file, mark.line, mark.column);
+  return fmt::format("{}:{}:{}", printable(mark.file), mark.line, mark.column);
 }
 
 std::string to_string(const Problem& problem) {
-  return fmt::format("{}: {}{}", to_string(problem.mark), problem.error ? "" : "warning: ", problem.message);
+  return fmt::format("{}: {}{}", to_string(problem.mark), problem.error ? "" : "warning: ", printable(problem.message));
 }
 
 Node scalar(std::string text) {
@@ -38,17 +38,8 @@ const Node* find(const Node& map, const std::string& key) {
   return nullptr;
 }
 
-std::string read_text(const std::filesystem::path& file, const Mark& where, std::vector<Problem>& problems) {
-  std::error_code ignored;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file, ignored)) {
-    const char* reason = stream ? "it is a folder" : std::strerror(errno);
-    problems.push_back({where, fmt::format("the file `{}` cannot be read: {}", file.string(), reason)});
-    return {};
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
+void drop_templates(Node& root) {
+  std::erase_if(root.entries, [](const Entry& entry) { return entry.key.starts_with("x-"); });
 }
 
 namespace {
@@ -57,8 +48,8 @@ constexpr std::size_t line_length = 100;
 
 bool is_plain(const std::string& text) {
   const auto word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  const auto inside = [&](char c) { return word(c) || std::strchr(" ./+-%()^*", c) != nullptr; };
-  if (text.empty() || text == "null" || text.back() == ' ') return false;
+  const auto inside = [&](char c) { return word(c) || std::string_view(" ./+-%()^*").find(c) != std::string::npos; };
+  if (text.empty() || text == "null" || text == "Null" || text == "NULL" || text.back() == ' ') return false;
   if (!word(text.front()) && !(text.front() == '-' && text.size() > 1 && word(text[1]))) return false;
   return std::all_of(text.begin(), text.end(), inside);
 }
@@ -66,36 +57,43 @@ bool is_plain(const std::string& text) {
 std::string quoted(const std::string& text) {
   if (is_plain(text)) return text;
   std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\x{:02x}", static_cast<unsigned>(c));
+  for (std::size_t at = 0; at < text.size();) {
+    const auto [code, size, valid] = character_at(text, at);
+    if (code == '"' || code == '\\') out += '\\';
+    if (valid && is_control(code)) {
+      out += fmt::format("\\x{:02x}", static_cast<unsigned>(code));
     } else {
-      out += c;
+      out += text.substr(at, size);
     }
+    at += size;
   }
   return out + '"';
 }
 
-std::string in_one_line(const Node& node) {
-  std::string text;
-  switch (node.kind) {
-  case NodeKind::null:
-    return "~";
-  case NodeKind::scalar:
-    return quoted(node.text);
-  case NodeKind::list:
-    for (const Node& item : node.items) text += fmt::format("{}{}", text.empty() ? "" : ", ", in_one_line(item));
-    return fmt::format("[{}]", text);
-  case NodeKind::map:
-    for (const Entry& entry : node.entries) {
-      text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", quoted(entry.key), in_one_line(entry.value));
-    }
-    return fmt::format("{{{}}}", text);
+// Adds a node in one line; false as soon as `out` is longer than `limit`, so that a long node costs no more.
+bool in_one_line(const Node& node, std::string& out, std::size_t limit = std::string::npos) {
+  const auto add_text = [&](const std::string& text) {
+    if (out.size() > limit || text.size() > limit) return false;
+    out += quoted(text);
+    return true;
+  };
+  if (node.kind == NodeKind::null) out += '~';
+  if (node.kind == NodeKind::scalar && !add_text(node.text)) return false;
+  const bool is_list = node.kind == NodeKind::list;
+  if (is_list || node.kind == NodeKind::map) out += is_list ? '[' : '{';
+  const std::size_t first = out.size();
+  for (const Node& item : node.items) {
+    if (out.size() > first) out += ", ";
+    if (!in_one_line(item, out, limit)) return false;
   }
-  return text;
+  for (const Entry& entry : node.entries) {
+    if (out.size() > first) out += ", ";
+    if (!add_text(entry.key)) return false;
+    out += ": ";
+    if (!in_one_line(entry.value, out, limit)) return false;
+  }
+  if (is_list || node.kind == NodeKind::map) out += is_list ? ']' : '}';
+  return out.size() <= limit;
 }
 
 bool is_short(const Node& node) {
@@ -104,29 +102,32 @@ bool is_short(const Node& node) {
            std::none_of(child.items.begin(), child.items.end(), [](const Node& n) { return n.kind == NodeKind::map; });
   };
   if (node.items.empty() && node.entries.empty()) return true;
-  return std::all_of(node.items.begin(), node.items.end(), plain) &&
-         std::all_of(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return plain(e.value); }) &&
-         in_one_line(node).size() <= line_length;
+  std::string line;
+  return in_one_line(node, line, line_length) && std::all_of(node.items.begin(), node.items.end(), plain) &&
+         std::all_of(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return plain(e.value); });
 }
 
 void write(const Node& node, const std::string& indent, std::string& out) {
   for (const Entry& entry : node.entries) {
-    out += fmt::format("{}{}:", indent, quoted(entry.key));
+    out += indent + quoted(entry.key) + ":";
     if (is_short(entry.value)) {
-      out += fmt::format(" {}\n", in_one_line(entry.value));
+      out += ' ';
+      in_one_line(entry.value, out);
+      out += '\n';
     } else {
-      out += "\n";
+      out += '\n';
       write(entry.value, indent + "  ", out);
     }
   }
   for (const Node& item : node.items) {
     if (is_short(item)) {
-      out += fmt::format("{}- {}\n", indent, in_one_line(item));
+      out += indent + "- ";
+      in_one_line(item, out);
+      out += '\n';
     } else {
-      std::string block;
-      write(item, indent + "  ", block);
-      block[indent.size()] = '-';
-      out += block;
+      const std::size_t begin = out.size();
+      write(item, indent + "  ", out);
+      out[begin + indent.size()] = '-';
     }
   }
 }
@@ -142,9 +143,13 @@ void walk(Node& node, const std::string& path, const Visit& visit) {
 } // namespace
 
 std::string write_yaml(const Node& node) {
-  if (node.kind != NodeKind::map || node.entries.empty()) return in_one_line(node) + "\n";
   std::string out;
-  write(node, "", out);
+  if (node.kind == NodeKind::map && !node.entries.empty()) {
+    write(node, "", out);
+  } else {
+    in_one_line(node, out);
+    out += '\n';
+  }
   return out;
 }
 

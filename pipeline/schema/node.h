@@ -49,11 +49,16 @@ Node scalar(std::string text);
 void add(Node& map, std::string key, Node value);
 const Node* find(const Node& map, const std::string& key); // nullptr: no such key
 
-// Parses YAML; `name` stands for the file in the marks. Syntax errors, duplicate keys, more than one document and
-// aliases that refer to themselves or explode are added to `problems`; the result is what could be read.
+// Parses YAML; `name` stands for the file in the marks. Syntax errors, duplicate keys, tags, more than one document,
+// more than 1e6 keys and values or 100 levels (aliases written out) are added to `problems`; the result is what could
+// be read. `<<: *name` and `<<: [*name, *other]` take over the entries of other maps which the map has not itself, the
+// first of a list first; they stand behind its own and keep the marks of where they were written.
 Node parse_yaml(const std::string& text, const std::string& name, std::vector<Problem>& problems);
 
-// The text of a file; a file that cannot be read is a problem at `where`.
+// Takes away the entries of a file that begin with `x-`: they only hold what `*name` and `<<` refer to.
+void drop_templates(Node& root);
+
+// The text of a file; one that cannot be read, is no regular file or has more than 10 MB is a problem at `where`.
 std::string read_text(const std::filesystem::path& file, const Mark& where, std::vector<Problem>& problems);
 
 // YAML text of a tree: a line per scalar, short lists and maps of scalars in one line. The same tree gives the same
