@@ -179,7 +179,8 @@ std::string_view words_of_line(std::string_view text, std::size_t at) {
 // A `:` where no value can begin.
 Slip of_value(std::string_view text, std::size_t at) {
   const std::size_t begin = content_of_line(text, at);
-  const std::string_view key = text.substr(begin, at > begin ? at - begin : 0);
+  std::string_view key = text.substr(begin, at > begin ? at - begin : 0);
+  key = key.substr(0, key.find_last_not_of(blanks) + 1);
   if (key.find(": ") != none) {
     return {at, "a second `: ` in one line; put a value that holds one in quotes, and the entries of a map in `{}`"};
   }

@@ -255,9 +255,12 @@ private:
         merge_mark = mark;
         continue;
       }
+      if (lacks_colon(written) && events_[at].kind == NodeKind::null) {
+        report(mark, without_colon(key.text));
+        continue;
+      }
       Node value = build(at);
       if (value.kind == NodeKind::null) value.mark = mark;
-      if (value.kind == NodeKind::null && lacks_colon(written)) report(mark, without_colon(key.text));
       map.entries.push_back({key.text, mark, std::move(value)});
     }
     if (merged != 0) merge(map, build(merged), merge_mark, lines);
@@ -290,6 +293,7 @@ std::optional<Problem> unfit(const std::string& text, const std::string& name) {
     return Problem{mark_at(text, at, name), "not valid YAML: this is no text file in UTF-8" + why};
   };
   if (text.starts_with("\xFE\xFF") || text.starts_with("\xFF\xFE")) return no_text(0, ", but in UTF-16");
+  constexpr std::string_view signs = ",[{&*!:?";
   std::size_t marks = 0;
   for (std::size_t at = 0; at < text.size();) {
     const auto [code, size, valid] = character_at(text, at);
@@ -301,10 +305,9 @@ std::optional<Problem> unfit(const std::string& text, const std::string& name) {
     if (code == '%' && (at == 0 || text[at - 1] == '\n') && !(at == 0 && text.starts_with("%YAML "))) {
       return Problem{mark_at(text, at, name), "not valid YAML: a line cannot begin with `%`; put the text in quotes"};
     }
-    const bool quote = code == '"' || code == '\'';
-    if (quote) ++marks;
-    if (!quote && code < 0x80 && std::string_view(",[{&*!:?").find(text[at]) != std::string_view::npos) marks += 2;
-    if (marks > 4 * node_limit) { // a quoted key in brackets has two quotes, a colon or comma before it
+    // nearly every key and value has a comma, colon or bracket; quotes add least to what the parser holds
+    marks += code == '"' || code == '\'' ? 1 : code < 0x80 && signs.find(text[at]) != std::string_view::npos ? 8 : 0;
+    if (marks > 10 * node_limit) {
       return Problem{mark_at(text, at, name), fmt::format("the file holds more than {} keys and values", node_limit)};
     }
     at += size;

@@ -111,6 +111,16 @@ TEST(Limits, NothingIsTakenForMarksWithoutEnd) {
   }
 }
 
+TEST(Limits, AMillionKeysAndValuesAreReadAndLittleMoreIsHeld) {
+  expect_read("[" + repeated(990'000, "1, ") + "1]\n");
+  expect_read("{\"b\": [" + repeated(900'000, "\"1\",") + "1]}\n");
+  for (const char* marks : {"[", "a,"}) {
+    const std::string text = "{" + repeated(1'240'000, marks);
+    expect_within_limits(marks, [&] { return !first_problem(text).empty(); });
+  }
+  expect_within_limits("quotes", [&] { return !first_problem("[" + repeated(4'900'000, "\"\"")).empty(); });
+}
+
 TEST(Limits, ManyKeysAndStagesAreReadAndWrittenInLinearTime) {
   std::string keys, doubled, stages = "stages:\n";
   for (int i = 0; i < 100'000; ++i) keys += fmt::format("key{}: {}\n", i, i);
