@@ -183,7 +183,8 @@ class Builder {
 public:
   Builder(const std::deque<Event>& events, std::string_view text, const std::string& name,
           std::vector<Problem>& problems)
-      : events_(events), text_(text), name_(name), problems_(problems) {}
+      : events_(events), text_(text), name_(name), problems_(problems),
+        last_(std::min(text.find_last_not_of(" \t\r\n"), text.size())), last_place_(mark_at(text, last_, name)) {}
 
   Node build(std::size_t index) {
     const Event& event = events_[index];
@@ -208,7 +209,10 @@ public:
 private:
   using Lines = std::map<std::string, int>; // where each key stands first
 
-  Mark place(const Event& event) const { return {name_, event.mark.line + 1, event.mark.column + 1}; }
+  Mark place(const Event& event) const {
+    if (byte(event.mark) > last_) return last_place_; // not in the line behind the last
+    return {name_, event.mark.line + 1, event.mark.column + 1};
+  }
 
   // What is wrong in a value is said once, not for each alias of it.
   void report(const Mark& mark, const std::string& message) {
@@ -255,7 +259,7 @@ private:
         merge_mark = mark;
         continue;
       }
-      if (lacks_colon(written) && events_[at].kind == NodeKind::null) {
+      if (copies_ == 0 && events_[at].kind == NodeKind::null && lacks_colon(written)) {
         report(mark, without_colon(key.text));
         continue;
       }
@@ -282,6 +286,8 @@ private:
   std::string_view text_;
   const std::string& name_;
   std::vector<Problem>& problems_;
+  std::size_t last_; // the last byte that is not blank
+  Mark last_place_;
   int copies_ = 0; // aliases around what is being built
   std::size_t reports_ = 0;
 };
