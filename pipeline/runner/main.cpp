@@ -7,10 +7,11 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/runner/check.h"
 #include "pipeline/runner/process.h"
 #include "pipeline/runner/run.h"
 #include "pipeline/schema/spelling.h"
-#include "pipeline/workflow/options.h"
+#include "pipeline/workflow/settings.h"
 
 namespace pneuma::pipeline::runner {
 
@@ -48,6 +49,7 @@ std::string counted(std::size_t count, const char* thing) {
 
 void check(const std::string& file) {
   const workflow::Workflow workflow = read(file);
+  check_by_stages(workflow, MeshCheck::made);
   std::string ids;
   for (const auto& stage : workflow.stages) ids += (ids.empty() ? "" : ", ") + stage.id;
   say(fmt::format("{}: ok: {} ({}), {}, {}", file, counted(workflow.stages.size(), "stage"), ids,
@@ -125,7 +127,11 @@ int body(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
   options.out = out;
-  if (run->parsed()) return runner::run(read(file), options);
+  if (run->parsed()) {
+    const workflow::Workflow workflow = read(file);
+    check_by_stages(workflow, MeshCheck::left_out);
+    return runner::run(workflow, options);
+  }
   if (check_command->parsed()) check(file);
   if (status->parsed()) runner::show_status(read(file), out);
   if (schema_command->parsed()) fmt::print("{}", workflow::workflow_json_schema());

@@ -22,20 +22,22 @@ Json group_of(const Option& option, const std::string& tag) {
   Json json = {{"type", "object"}, {"additionalProperties", false}};
   Json properties = Json::object(), required = Json::array();
   if (!tag.empty()) properties[tag] = {{"const", option.name}};
-  for (const Option& member : option.members) {
+  for (const Option& member : option.members()) {
+    if (member.is_internal) continue;
     properties[member.name] = schema_of(member);
     if (member.is_required) required.push_back(member.name);
   }
   json["properties"] = std::move(properties);
   if (!required.empty()) json["required"] = std::move(required);
   for (const KeySet& set : option.alternatives) {
-    if (set.least == 0) {
-      json["not"] = {{"required", set.keys}};
-      continue;
-    }
-    Json one = Json::array();
+    Json one = Json::array(), words = Json::object();
     for (const std::string& key : set.keys) one.push_back({{"required", {key}}});
-    json[set.most == 1 ? "oneOf" : "anyOf"] = std::move(one);
+    if (set.least == 0) {
+      words["not"]["required"] = set.keys;
+    } else {
+      words[set.most == 1 ? "oneOf" : "anyOf"] = std::move(one);
+    }
+    json["allOf"].push_back(std::move(words));
   }
   return json;
 }
@@ -65,25 +67,28 @@ Json body_of(const Option& option) {
     return {{"type", "string"}, {"pattern", R"(^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[^0-9\s].*$)"}};
   case Type::choice: {
     Json names = Json::array();
-    for (const Option& allowed : option.members) names.push_back(allowed.name);
+    for (const Option& allowed : option.members()) names.push_back(allowed.name);
     return {{"enum", std::move(names)}};
   }
   case Type::list: {
-    Json json = {{"type", "array"}, {"items", schema_of(option.members.front())}};
+    Json json = {{"type", "array"}, {"items", schema_of(option.members().front())}};
     if (option.min_items > 0) json["minItems"] = option.min_items;
     if (option.max_items < std::numeric_limits<std::size_t>::max()) json["maxItems"] = option.max_items;
     return json;
   }
   case Type::group:
     return group_of(option, "");
-  case Type::table:
-    return {{"type", "object"},
-            {"propertyNames", {{"pattern", name_pattern}}},
-            {"additionalProperties", schema_of(option.members.front())}};
+  case Type::table: {
+    Json json = {{"type", "object"},
+                 {"propertyNames", {{"pattern", name_pattern}}},
+                 {"additionalProperties", schema_of(option.members().front())}};
+    if (option.min_items > 0) json["minProperties"] = option.min_items;
+    return json;
+  }
   case Type::either:
   case Type::variant: {
     Json kinds = Json::array();
-    for (const Option& kind : option.members) {
+    for (const Option& kind : option.members()) {
       if (option.type == Type::either) {
         kinds.push_back(schema_of(kind));
       } else {
@@ -115,6 +120,7 @@ Json schema_of(const Option& option) {
 std::string json_schema(const Option& root, const std::string& title) {
   Json json = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
   json.update(schema_of(root));
+  json["patternProperties"]["^x-"] = {{"description", "a template for anchors and merge keys, read by nobody"}};
   return json.dump(2) + "\n";
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <limits>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +32,10 @@ struct Range {
   std::string words;        // as a user would write it: "positive", "from -1 to 0.5"
   bool includes_min = true; // in SI
   bool includes_max = true;
+
+  bool holds(double value) const {
+    return (includes_min ? value >= min : value > min) && (includes_max ? value <= max : value < max);
+  }
 };
 
 // How many keys of a set stand in a group.
@@ -40,90 +44,47 @@ struct KeySet {
   std::size_t least = 1, most = 1;
 };
 
-// One option, declared once: parsing, checks, defaults, documentation and the JSON schema come from it.
+// What a user may write at one place: plain data, from which reading, messages, the reference and the JSON schema come.
+// Declared through `Form` and `Keys` (form.h, keys.h), which bind it to the member that it fills.
 struct Option {
   std::string name;
   Type type = Type::text;
-  std::string text; // what it means, half a sentence
-  std::string unit; // of a quantity, SI
-  std::vector<Option> members;
-  std::string tag; // of a variant
+  std::string text;                                 // what it means, half a sentence
+  std::string unit;                                 // of a quantity, SI
+  std::string example;                              // of a quantity; empty: as usual for the dimension
+  std::shared_ptr<const std::vector<Option>> parts; // see members()
+  std::string tag;                                  // of a variant
+  std::string told_by; // of a group: the key by which it is told from others of its name in a variant
 
   bool is_required = false;
-  std::string default_value;    // as YAML; empty: none
-  std::string not_yet;          // known but not available: what is available instead
-  std::optional<Range> limits;  // outside is an error
-  std::optional<Range> usually; // outside is a warning
+  bool is_internal = false;                 // stands in stage.yaml alone
+  std::string default_value;                // as YAML; empty: none
+  std::shared_ptr<const Node> default_node; // the same, read
+  std::string not_yet;                      // known but not available: what is available instead
+  std::optional<Range> limits;              // outside is an error
+  std::optional<Range> usually;             // outside is a warning
   std::size_t min_items = 0;
   std::size_t max_items = std::numeric_limits<std::size_t>::max();
   std::vector<KeySet> alternatives; // of a group
+  std::string defines;              // kind of thing ("foil") that gets its name here
 
-  // The table reads as sentences: quantity("thickness", "m", "...").required().positive()
-  Option required() const;
-  Option otherwise(std::string yaml) const; // the default
-  Option unavailable(std::string instead) const;
-  Option positive() const;
-  Option at_least(double min, std::string words) const;
-  Option between(double min, double max, std::string words) const;
-  Option within(Range range) const;
-  Option usual(double min, double max, std::string words) const;
-  Option items(std::size_t least, std::size_t most) const;
-  Option exactly_one(std::vector<std::string> keys) const;
-  Option at_least_one(std::vector<std::string> keys) const;
-  Option not_both(std::string first, std::string second) const;
+  // Words of a choice, item of a list or table, kinds, keys of a group, groups of a variant. Shared by copies.
+  const std::vector<Option>& members() const;
 };
 
-Option text(std::string name, std::string what);
-Option word(std::string name, std::string what);
-Option flag(std::string name, std::string what);
-Option integer(std::string name, std::string what);
-Option number(std::string name, std::string what);
-Option quantity(std::string name, std::string unit, std::string what);
-Option choice(std::string name, std::vector<Option> values, std::string what);
-Option value(std::string name, std::string what); // a value of a choice
-Option list(std::string name, Option item, std::string what);
-Option group(std::string name, std::vector<Option> keys, std::string what);
-Option table(std::string name, Option value, std::string what);
-Option either(std::string name, std::vector<Option> kinds, std::string what);
-Option variant(std::string name, std::string tag, std::vector<Option> groups, std::string what);
+Option option_of(Type type, std::vector<Option> members = {});
+void set_default(Option& option, const std::string& yaml);
 
-struct Member;
+NodeKind kind_of(const Option& option); // what it is written as; of `either` what a scalar is
 
-// What was read for an option: checked, in SI, defaults filled in.
-struct Value {
-  Mark mark; // of a default: of the group it belongs to
-  Mark key;
-  bool given = false; // by the user, not a default
-  bool valid = false; // a problem was reported otherwise
-  bool flag = false;
-  double number = 0;               // integer, number, quantity
-  std::string text;                // text, name, choice; tag of a variant; otherwise what was written
-  const Option* read_as = nullptr; // which of the kinds or groups it is
-  std::vector<Value> items;
-  std::vector<Member> members;
+// What may stand for an option, for messages: "a length with its unit".
+std::string expected(const Option& option);
 
-  const Value* find(const std::string& name) const;       // present, valid or not
-  const Value* operator[](const std::string& name) const; // present and valid, otherwise nullptr
-};
+std::string wanted(const KeySet& set); // "exactly one of: a, b"
 
-struct Member {
-  std::string name;
-  Value value;
-};
-
-// What a key of a group holds; `otherwise`, nothing or an empty text if it is absent or wrong.
-double number_of(const Value& group, const std::string& key, double otherwise = 0);
-std::optional<double> optional_number(const Value& group, const std::string& key);
-std::optional<int> optional_integer(const Value& group, const std::string& key);
-std::string text_of(const Value& group, const std::string& key);
-
-// Checks a tree against an option and converts it. Every problem is added to `problems`. The places of values
-// that the user gave go to `origins` by path.
-struct Check {
-  std::vector<Problem>& problems;
-  std::map<std::string, Mark>& origins;
-};
-Value check(const Option& option, const Node& node, const std::string& path, Check& context);
+// Names of those that are available, or of all.
+std::vector<std::string> available_names(const std::vector<Option>& options);
+std::vector<std::string> names_of(const std::vector<Option>& options);
 
 // The reference of all keys as plain text.
 std::string reference(const Option& root);

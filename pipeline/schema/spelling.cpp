@@ -33,9 +33,20 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
+constexpr std::size_t most_searched = 300; // of more names, as of many stages, none is searched
+
 } // namespace
 
+std::vector<std::string> others(const std::vector<std::string>& words, std::string_view than) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < words.size() && out.size() <= most_searched; ++i) {
+    if (words[i] != than) out.push_back(words[i]);
+  }
+  return out;
+}
+
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+  if (known.size() > most_searched) return "";
   std::string best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
@@ -55,9 +66,10 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 
 std::string joined(const std::vector<std::string>& words) {
   if (words.empty()) return "none";
+  constexpr std::size_t most = 40;
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
+  for (std::size_t i = 0; i < std::min(words.size(), most); ++i) text += (i == 0 ? "" : ", ") + words[i];
+  return words.size() <= most ? text : text + ", ...";
 }
 
 } // namespace pneuma::pipeline::schema

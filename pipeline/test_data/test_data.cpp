@@ -441,4 +441,23 @@ Row converted(const Row& row, Measure from, Measure to) {
   return out;
 }
 
+Tests read_tests(const std::vector<std::string>& files, const schema::Mark& named, Measure measure,
+                 const std::vector<std::string>& needed, std::vector<Problem>& problems) {
+  Tests tests;
+  for (const std::string& text : files) {
+    const auto file = (std::filesystem::path(named.file).parent_path() / text).lexically_normal();
+    const std::size_t before = problems.size();
+    const std::string content = schema::read_text(file, named, problems);
+    if (problems.size() > before) continue;
+    for (const Row& row : parse(content, file.generic_string(), measure, needed, problems)) {
+      tests.rows.push_back(converted(row, measure, Measure::green_lagrange));
+      tests.marks.push_back({file.generic_string(), row.line, 1});
+      if (std::isnan(row.temperature)) continue;
+      const auto [least, most] = tests.temperatures.value_or(std::array{row.temperature, row.temperature});
+      tests.temperatures = {std::min(least, row.temperature), std::max(most, row.temperature)};
+    }
+  }
+  return tests;
+}
+
 } // namespace pneuma::pipeline::test_data

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,5 +40,16 @@ std::vector<Row> parse(const std::string& text, const std::string& name, Measure
 // Strains and stresses of a row in the other measure: stretch l = 1 + e = sqrt(1 + 2 E), nominal stress = l S (no shear
 // between 1 and 2). Shear stays as it is.
 Row converted(const Row& row, Measure from, Measure to);
+
+// The rows of several files, one after the other, as Green-Lagrange strains and second Piola-Kirchhoff stresses.
+struct Tests {
+  std::vector<Row> rows;
+  std::vector<schema::Mark> marks;                   // where each stands
+  std::optional<std::array<double, 2>> temperatures; // least and most, K
+};
+
+// Reads files that lie beside the one that names them, at `named`.
+Tests read_tests(const std::vector<std::string>& files, const schema::Mark& named, Measure measure,
+                 const std::vector<std::string>& needed, std::vector<schema::Problem>& problems);
 
 } // namespace pneuma::pipeline::test_data

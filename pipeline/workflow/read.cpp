@@ -6,15 +6,82 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
-#include "pipeline/workflow/builder.h"
+#include "pipeline/schema/json_schema.h"
+#include "pipeline/workflow/materials.h"
 #include "pipeline/workflow/settings.h"
+#include "pipeline/workflow/stages.h"
 
 namespace pneuma::pipeline::workflow {
+
+namespace {
 
 using schema::Node;
 using schema::NodeKind;
 
-namespace {
+constexpr int stage_format = 2;            // of stage.yaml
+constexpr std::size_t most_problems = 200; // that are told
+
+// A file as it stands: of a user, or (is_stage_file) of the runner.
+struct File {
+  int format = 0;
+  std::string name;
+  Site site;
+  std::variant<std::vector<std::string>, Materials> materials; // files of them, or in place
+  Cushion cushion;
+  std::optional<MeshSettings> mesh;
+  std::map<std::string, StageSettings> stages;
+
+  static void declare(schema::Keys<File>& keys, bool is_stage_file);
+};
+
+void File::declare(schema::Keys<File>& keys, bool is_stage_file) {
+  const auto version = [](int number) {
+    return integer().between(number, number, fmt::format("{}, the version this program reads", number));
+  };
+  const auto in_place = schema::as<decltype(materials)>(table(material().named("NAME", "a material")));
+  if (is_stage_file) {
+    keys("format", &File::format, version(stage_format), "version of the format of stage.yaml");
+    keys("name", &File::name, text().otherwise("\"\""), "of the project");
+    keys("site", &File::site, group<Site>(), "where the cushion is");
+    keys("materials", &File::materials, in_place, "of the foils");
+  } else {
+    const auto file = text().named("file", "a file of materials");
+    const auto one = mapped<decltype(materials)>(
+        file, [](const std::string& path) { return std::vector{path}; }, [](const auto&) { return std::string(); });
+    const auto several = schema::as<decltype(materials)>(list(file).named("files", "files of materials"));
+    keys("pneuma", &File::format, version(1), "version of the format");
+    keys("name", &File::name, text().otherwise("\"\""), "of the project");
+    keys("materials", &File::materials,
+         either<decltype(materials)>({one, several, in_place.named("in_place", "materials in place")},
+                                     [](const auto&) { return 0; }),
+         "where the materials of the foils are");
+    keys("site", &File::site, group<Site>().otherwise("{}"), "where the cushion is");
+  }
+  keys("cushion", &File::cushion, group<Cushion>(), "what is built");
+  auto mesh = keys("mesh", &File::mesh, group<MeshSettings>(), "the mesh all foils get");
+  mesh.key.option.is_required = !is_stage_file;
+  keys("stages", &File::stages, table(stage_form().named("ID", "a stage")).otherwise("{}"), "the stages by their IDs");
+  if (is_stage_file) return;
+  const char* stage = "loads stand in a wind stage";
+  keys.unavailable("loads", stage);
+  keys.unavailable("combinations", stage);
+  keys.unavailable("accuracy", "choose the mesh size by hand");
+  keys.is("workflow", "From form to wind for ETFE cushions");
+}
+
+const Form<File>& file_form(bool is_stage_file) {
+  const auto make = [](bool of_stage) {
+    schema::Keys<File> keys;
+    File::declare(keys, of_stage);
+    return group(keys);
+  };
+  static const Form<File> user = make(false), stage = make(true);
+  return is_stage_file ? stage : user;
+}
+
+bool is_error(const Problem& problem) {
+  return problem.error;
+}
 
 // In the order of the files and in each from top to bottom; the same once.
 void put_in_order(std::vector<Problem>& problems, const std::string& first_file) {
@@ -27,6 +94,16 @@ void put_in_order(std::vector<Problem>& problems, const std::string& first_file)
     return to_string(a.mark) == to_string(b.mark) && a.message == b.message;
   };
   problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
+  if (problems.size() <= most_problems) return;
+  const std::size_t more = problems.size() - most_problems;
+  const bool hides_error =
+      std::any_of(problems.begin() + static_cast<std::ptrdiff_t>(most_problems), problems.end(), is_error);
+  problems.resize(most_problems);
+  problems.push_back({problems.back().mark, fmt::format("and {} more problems behind this one", more), hides_error});
+}
+
+bool has_errors(const std::vector<Problem>& problems) {
+  return std::any_of(problems.begin(), problems.end(), is_error);
 }
 
 // "cushion.yaml:14:22" -> Mark
@@ -54,59 +131,235 @@ std::map<std::string, Mark> take_origins(Node& tree) {
   return origins;
 }
 
+std::string folder_relative(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  if (file.is_absolute() == folder.is_absolute()) {
+    const auto relative = file.lexically_normal().lexically_relative((folder / "").lexically_normal());
+    if (!relative.empty()) return relative.generic_string();
+  }
+  const auto base = std::filesystem::absolute(folder.empty() ? std::filesystem::path(".") : folder).lexically_normal();
+  return std::filesystem::absolute(file).lexically_normal().lexically_relative(base).generic_string();
+}
+
+// The materials that the foils use, with the points of their tables.
+void read_materials_of(Reader& reader, File& file, const Node& tree, Workflow& out) {
+  const auto* files = std::get_if<std::vector<std::string>>(&file.materials);
+  const Node* node = schema::find(tree, "materials");
+  if (node == nullptr || (node->kind != NodeKind::map && !reader.is_whole("materials"))) {
+    reader.cannot_know("material");
+  } else if (node->kind == NodeKind::map) {
+    for (const schema::Entry& entry : node->entries) reader.define("material", entry.key, entry.mark);
+    if (auto* in_place = std::get_if<Materials>(&file.materials)) out.materials = std::move(*in_place);
+    for (auto& [name, material] : out.materials) material.name = name;
+  } else {
+    const auto read = [&](const std::string& path, const Node& named) {
+      read_materials_file(reader, (out.file.parent_path() / path).lexically_normal(), named.mark, out.materials);
+    };
+    for (std::size_t i = 0; i < files->size(); ++i) read((*files)[i], node->items.empty() ? *node : node->items[i]);
+  }
+  check_fits(reader, out.materials);
+  std::vector<std::string> of_foils;
+  for (const FoilSettings& foil : out.cushion.foils) of_foils.push_back(foil.material);
+  const std::set<std::string> used = with_fits(out.materials, of_foils);
+  std::erase_if(out.materials, [&](const auto& item) { return !used.contains(item.first); });
+  for (auto& [name, material] : out.materials) {
+    read_tests(reader, material, out.site.temperature);
+    find_places(reader, material);
+  }
+}
+
+void check_gravity(Reader& reader, const Workflow& workflow) {
+  const auto has_weight = [](const StageSettings& stage) { return stage.run == "inflate" || stage.run == "wind"; };
+  if (!workflow.site.gravity || std::none_of(workflow.stages.begin(), workflow.stages.end(), has_weight)) {
+    return;
+  }
+  std::set<std::string> told;
+  for (const At<FoilSettings>& foil : items(At<Cushion>{workflow.cushion, "cushion"}[&Cushion::foils])) {
+    const auto found = workflow.materials.find(foil->material);
+    if (found == workflow.materials.end() || found->second.density || !told.insert(foil->material).second) continue;
+    reader.fail(foil[&FoilSettings::material].path,
+                fmt::format("the material `{}` has no {}, which gravity needs; add it, or say `site: {{gravity: off}}`",
+                            foil->material, schema::name(&Material::density)));
+  }
+}
+
+// In the order of the file, `mesh` first.
+void read_stages(File& file, const Node& tree, Workflow& out) {
+  if (file.mesh) out.stages.push_back({"mesh", "mesh", "", "", *file.mesh});
+  const Node* stages = schema::find(tree, "stages");
+  for (const schema::Entry& entry : stages != nullptr ? stages->entries : std::vector<schema::Entry>{}) {
+    const auto found = file.stages.find(entry.key);
+    if (found == file.stages.end()) continue;
+    out.stages.push_back(std::move(found->second));
+    out.stages.back().id = entry.key;
+  }
+}
+
+Node stage_node(const StageSettings& stage) {
+  static const Form<StageSettings> form = stage_form();
+  return form.write(stage);
+}
+
+// The tree of stage.yaml without its head.
+Node settings_node(const Workflow& workflow, const StageSettings* stage) {
+  File file;
+  file.site = workflow.site;
+  file.cushion = workflow.cushion;
+  file.materials = workflow.materials;
+  if (stage != nullptr && stage->run == "mesh") file.mesh = std::get<MeshSettings>(stage->settings);
+  Node node = file_form(true).write(file);
+  node.entries.erase(node.entries.begin(), node.entries.begin() + 2); // format, name
+  node.entries.pop_back();                                            // stages
+  if (stage == nullptr || stage->run == "mesh") return node;
+  Node stages;
+  add(stages, stage->id, stage_node(*stage));
+  add(node, "stages", std::move(stages));
+  return node;
+}
+
+void add_origins(const Reader& reader, const Node& node, const std::string& path, Workflow& out) {
+  std::map<std::string, std::string> relative; // of each file
+  for (const auto& [leaf, value] : schema::leaves(node)) {
+    const std::string at = schema::below(path, leaf);
+    std::optional<Mark> mark = reader.origin(at);
+    if (!mark) continue;
+    const auto [known, is_new] = relative.try_emplace(mark->file);
+    if (is_new) known->second = folder_relative(mark->file, out.file.parent_path());
+    mark->file = known->second;
+    out.origins[at] = *mark;
+  }
+}
+
+Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& path) {
+  Workflow out;
+  out.file = path;
+  File file;
+  file_form(reader.is_stage_file()).read(reader, tree, "", file);
+  if (tree.kind != NodeKind::map) return out;
+  out.name = file.name;
+  out.site = file.site;
+  out.cushion = file.cushion;
+  read_stages(file, tree, out);
+  read_materials_of(reader, file, tree, out);
+  const Node* stages = schema::find(tree, "stages");
+  if (stages != nullptr && stages->kind == NodeKind::map) link(reader, *stages, out.stages);
+  reader.check_references();
+  if (reader.is_whole("site")) check_gravity(reader, out);
+  check_stages(reader, out);
+  if (has_errors(reader.problems)) return out;
+  complete(reader, out);
+  if (reader.is_stage_file()) return out;
+  add_origins(reader, settings_node(out, nullptr), "", out);
+  for (const StageSettings& stage : out.stages) {
+    if (const auto* mesh = std::get_if<MeshSettings>(&stage.settings)) {
+      add_origins(reader, group<MeshSettings>().write(*mesh), "mesh", out);
+    } else {
+      add_origins(reader, stage_node(stage), "stages." + stage.id, out);
+    }
+  }
+  return out;
+}
+
 } // namespace
 
 ReadResult read_workflow(const std::filesystem::path& file) {
-  Builder builder(file, false);
+  Reader reader;
   const std::string name = file.generic_string();
-  const std::string text = schema::read_text(file, {name, 1, 1}, builder.problems);
-  const Node tree = schema::parse_yaml(text, name, builder.problems);
+  const std::string text = schema::read_text(file, {name, 1, 1}, reader.problems);
+  Node parsed = schema::parse_yaml(text, name, reader.problems);
+  schema::drop_templates(parsed);
+  const Node& tree = reader.keep(std::move(parsed));
   ReadResult result;
-  if (tree.kind != NodeKind::null) {
-    result.workflow = builder.build(tree);
-  } else if (builder.problems.empty()) {
-    builder.problems.push_back({tree.mark, "the file is empty; a workflow begins with `pneuma: 1`"});
-  }
   result.workflow.file = file;
-  result.problems = std::move(builder.problems);
+  if (tree.kind != NodeKind::null) {
+    result.workflow = build(reader, tree, file);
+  } else if (reader.problems.empty()) {
+    reader.fail(tree.mark, "the file is empty; a workflow begins with `pneuma: 1`");
+  }
+  result.problems = std::move(reader.problems);
   put_in_order(result.problems, name);
   return result;
 }
 
 MaterialsResult read_materials(const std::filesystem::path& file, const std::vector<std::string>& names) {
-  Builder builder(file, false);
-  MaterialsResult result = builder.build_materials(names);
-  result.problems = std::move(builder.problems);
+  Reader reader;
+  MaterialsResult result;
+  read_materials_file(reader, file, {file.generic_string(), 1, 1}, result.known);
+  check_fits(reader, result.known);
+  reader.check_references();
+  result.names = reader.names("material");
+  const std::vector<std::string>& asked = names.empty() ? result.names : names;
+  for (const std::string& name : with_fits(result.known, asked)) {
+    if (const auto found = result.known.find(name); found != result.known.end()) {
+      read_tests(reader, found->second, std::nullopt);
+    }
+  }
+  for (auto& [name, material] : result.known) find_places(reader, material);
+  for (const std::string& name : result.names) {
+    const auto found = result.known.find(name);
+    const bool is_asked = std::find(asked.begin(), asked.end(), name) != asked.end();
+    if (is_asked && found != result.known.end()) result.materials.push_back(found->second);
+  }
+  result.problems = std::move(reader.problems);
   put_in_order(result.problems, file.generic_string());
   return result;
 }
 
 Workflow read_stage(const std::filesystem::path& file) {
-  Builder builder(file, true);
+  Reader reader(true);
   const std::string name = file.generic_string();
-  const std::string text = schema::read_text(file, {name, 1, 1}, builder.problems);
-  Node tree = schema::parse_yaml(text, name, builder.problems);
+  const std::string text = schema::read_text(file, {name, 1, 1}, reader.problems);
+  Node tree = schema::parse_yaml(text, name, reader.problems);
   const std::map<std::string, Mark> origins = take_origins(tree);
+  if (schema::find(tree, "pneuma") != nullptr && schema::find(tree, "format") == nullptr) {
+    const char* what = origins.empty()
+                           ? "this is a workflow file, not the stage.yaml of a stage; run it with `pneuma run`"
+                           : "this stage.yaml was written by an older version; run the workflow again";
+    throw base::InputError(to_string(Problem{tree.mark, what}));
+  }
   schema::replace_marks(tree, origins);
   Workflow workflow;
-  if (tree.kind != NodeKind::null) workflow = builder.build(tree);
-  workflow.file = file;
+  if (tree.kind != NodeKind::null) workflow = build(reader, reader.keep(std::move(tree)), file);
   workflow.origins = origins;
-  const auto is_error = [](const Problem& problem) { return problem.error; };
-  const bool bad = std::any_of(builder.problems.begin(), builder.problems.end(), is_error);
-  if (!bad && workflow.stages.size() != 1) {
-    Problem problem;
-    problem.mark = {name, 1, 1};
-    problem.message = fmt::format("a stage file holds one stage, not {}", workflow.stages.size());
-    builder.problems.push_back(problem);
+  if (!has_errors(reader.problems) && workflow.stages.size() != 1) {
+    reader.fail(Mark{name, 1, 1}, fmt::format("a stage file holds one stage, not {}", workflow.stages.size()));
   }
-  put_in_order(builder.problems, name);
+  put_in_order(reader.problems, name);
   std::vector<std::string> errors;
-  for (const Problem& problem : builder.problems) {
+  for (const Problem& problem : reader.problems) {
     if (problem.error) errors.push_back(to_string(problem));
   }
   if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
   return workflow;
+}
+
+// The name of the project is left out: it changes no result.
+std::string effective_settings(const Workflow& workflow, const StageSettings& stage) {
+  return schema::write_yaml(settings_node(workflow, &stage));
+}
+
+std::string stage_yaml(const Workflow& workflow, const StageSettings& stage) {
+  Node node;
+  add(node, "format", schema::scalar(fmt::format("{}", stage_format)));
+  add(node, "name", schema::scalar(workflow.name));
+  Node settings = settings_node(workflow, &stage);
+  for (schema::Entry& entry : settings.entries) node.entries.push_back(std::move(entry));
+  // where the values come from; what is not listed is a default
+  Node origin;
+  origin.kind = NodeKind::map;
+  for (const auto& [path, leaf] : schema::leaves(node)) {
+    const auto known = workflow.origins.find(path);
+    if (known != workflow.origins.end()) add(origin, path, schema::scalar(to_string(known->second)));
+  }
+  add(node, "origin", std::move(origin));
+  return schema::write_yaml(node);
+}
+
+std::string workflow_json_schema() {
+  return schema::json_schema(file_form(false).option, "Pneuma workflow");
+}
+
+std::string workflow_reference() {
+  return schema::reference(file_form(false).option);
 }
 
 } // namespace pneuma::pipeline::workflow

@@ -57,7 +57,7 @@ public:
   // line from where it is to where it shall be, so that one control may follow another: loading, then a held stress
   // (creep) or strain (relaxation), then unloading. Damped Newton on the strains with the law's tangent; the way is cut
   // where that fails. One step of the law in time, unless cut: the caller chooses steps that are short enough for it.
-  // False: not reached; the piece is where it came last.
+  // False: not reached, or in parts too small; the piece is where it came last.
   bool advance(const Control& control, double target, double duration = 0);
 
   // The driven amount of a control as the piece is now.

@@ -79,7 +79,7 @@ public:
   Run(const Start& start, Drive drive)
       : start_(start), drive_(std::move(drive)), begin_(drive_.model.mesh.nodes),
         folder_(start.arguments.out.parent_path()), system_(drive_.model, start.arguments.threads),
-        newton_(system_, newton_options(start)), history_(folder_ / "history.csv"), series_(folder_),
+        newton_(system_, newton_options(drive_.path)), history_(folder_ / "history.csv"), series_(folder_),
         contact_check_(drive_.model.mesh, start.workflow.site.up) {}
 
   // Throws Error with exit code 5, after everything is written, where the path did not reach its end.
@@ -97,9 +97,9 @@ public:
   }
 
 private:
-  static path::NewtonOptions newton_options(const Start& start) {
+  static path::NewtonOptions newton_options(const pipeline::workflow::PathSettings& path) {
     path::NewtonOptions options;
-    const pipeline::workflow::SolverOptions& given = start.stage().options;
+    const pipeline::workflow::PathOptions& given = path.options;
     if (given.tolerance) options.tolerance = *given.tolerance;
     if (given.max_iterations) options.max_iterations = *given.max_iterations;
     return options;
@@ -115,8 +115,9 @@ private:
   }
 
   path::PathResult follow(assembly::Configuration& c) {
-    const path::Objection objection =
-        drive_.contact_stops ? [this](const assembly::Configuration& at) { return contact_at(at); } : path::Objection();
+    const path::Objection objection = drive_.path.contact_stops
+                                          ? [this](const assembly::Configuration& at) { return contact_at(at); }
+                                          : path::Objection();
     const path::Accept accepted = [&](const path::Step& step, const assembly::Configuration& at) {
       return accept(step, at);
     };
@@ -127,26 +128,26 @@ private:
       artificial_tension_ = std::max(artificial_tension_, i.shift);
       stop_if_interrupted();
     };
-    const int parts = drive_.control.steps.value_or(1);
-    const pipeline::workflow::SolverOptions& given = start_.stage().options;
-    if (const std::optional<path::PathControl> control = path_control(start_, drive_.control)) {
+    const int parts = steps_of(drive_.path.control).value_or(1);
+    const pipeline::workflow::PathOptions& given = drive_.path.options;
+    if (const std::optional<path::PathControl> control = path_control(start_, drive_.path.control)) {
       path::ControlledPathOptions options;
       options.parts = parts;
       options.objection = objection;
       if (given.max_steps) options.max_steps = *given.max_steps;
-      if (given.plastic_step) options.flow.growth = *given.plastic_step;
+      options.flow.growth = given.plastic_step;
       if (given.max_iterations) options.max_iterations = *given.max_iterations;
       return path::follow_control(system_, newton_, c, *control, options, accepted, report);
     }
     path::LoadPathOptions options;
-    if (!drive_.control.schedule.empty()) options.schedule = {{0, 0}};
-    for (const pipeline::workflow::Moment& moment : drive_.control.schedule) {
+    if (!drive_.path.history.empty()) options.schedule = {{0, 0}};
+    for (const pipeline::workflow::Moment& moment : drive_.path.history) {
       options.schedule.push_back({moment.time, moment.factor});
     }
     options.parts = parts;
     options.objection = objection;
     if (given.max_steps) options.max_steps = *given.max_steps;
-    if (given.plastic_step) options.flow.growth = *given.plastic_step;
+    options.flow.growth = given.plastic_step;
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
 
@@ -163,13 +164,13 @@ private:
                           c.pressures[static_cast<Eigen::Index>(i)], system_.chamber_volume(static_cast<Index>(i)));
     }
     base::say(line);
-    if (!drive_.contact_stops && contact_.empty()) {
+    if (!drive_.path.contact_stops && contact_.empty()) {
       contact_ = contact_at(c);
       if (!contact_.empty()) base::warn(contact_ + " (goes on: contact is ignored)");
     }
     const std::vector<FoilResults> foils = results(c);
     write_history(step, c, foils);
-    if (drive_.control.steps && step.end_of_part) {
+    if (steps_of(drive_.path.control) && step.end_of_part) {
       const Clock clock;
       State state = make_state(c, foils);
       state.provenance.converged = true;
@@ -194,7 +195,7 @@ private:
 
   void write_history(const path::Step& step, const assembly::Configuration& c, const std::vector<FoilResults>& foils) {
     History::Row row{{"step", step.number}, {"load_factor", step.load_factor}, {"iterations", step.iterations}};
-    if (!drive_.control.schedule.empty()) row.emplace_back("time", step.time);
+    if (!drive_.path.history.empty()) row.emplace_back("time", step.time);
     for (std::size_t i = 0; i < drive_.state.chambers.size(); ++i) {
       const std::string chamber = "chambers." + drive_.state.chambers[i].name + ".";
       row.emplace_back(chamber + "gauge_pressure", c.pressures[static_cast<Eigen::Index>(i)]);
@@ -503,9 +504,8 @@ void run_equilibrium(const Start& start, Drive drive) {
   const bool plastic = any_foil([](const auto& law) { return solver::material::history_components(law) > 0; });
   const bool flows = any_foil([](const auto& law) { return solver::material::is_rate_dependent(law); });
   if (plastic) drive.modelled.emplace_back("yield of the foils whose law has it, with its history");
-  if (flows && !drive.control.schedule.empty())
-    drive.modelled.emplace_back("flow with time of the foils whose law has it");
-  if (flows && drive.control.schedule.empty()) {
+  if (flows && !drive.path.history.empty()) drive.modelled.emplace_back("flow with time of the foils whose law has it");
+  if (flows && drive.path.history.empty()) {
     drive.not_modelled.emplace_back("flow with time: without `duration` or `history` no time passes");
   }
   drive.not_modelled.insert(drive.not_modelled.end(),

@@ -31,8 +31,7 @@ struct Drive {
   solver::assembly::Model model;
   State state;                   // what the new state takes over: mesh, foils, supports, chambers
   std::vector<DrivenLoad> loads; // those on the model; what of them acts at the end goes into the new state
-  bool contact_stops = true;
-  pipeline::workflow::Control control;
+  pipeline::workflow::PathSettings path;
   // The load in a unit of its own, where the stage has one: what it is called and its value at load factor 1, SI.
   std::string load_name = "load_factor";
   double load_at_one = 1;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "geometry/base/log.h"
 #include "pipeline/schema/quantity.h"
 #include "solver/material/judgement.h"
+#include "stages/common/law_at.h"
 #include "stages/common/summary.h"
 
 namespace pneuma::stages::common {
@@ -22,27 +24,44 @@ namespace pneuma::stages::common {
 namespace {
 
 namespace workflow = pipeline::workflow;
+namespace test_data = pipeline::test_data;
 namespace material = solver::material;
 using pipeline::schema::celsius;
+using workflow::Mark;
+using workflow::Problem;
 
 constexpr double megapascal = 1e6;
 
-// The place in the user's file of a parameter (as `material::Fault` names it) of the law that a material has at a
-// temperature: the material's.
-std::string place_of(const workflow::Material& m, const std::string&, double) {
-  return to_string(m.mark);
+// The place in the user's file of a parameter (as `material::Fault` names it; of a list where it begins) of the law
+// that a material has at a temperature: where its table has an own value, that, otherwise the law's, or the material's.
+Mark place_of(const workflow::Material& m, const std::string& parameter = "", double temperature = 0) {
+  if (m.places.empty()) return {};
+  const Mark& whole = m.places.begin()->second; // "" comes first
+  if (parameter.empty()) return whole;
+  std::vector<std::string> paths;
+  for (std::size_t i = 0; i < m.other.size(); ++i) {
+    if (m.other[i].at == temperature) paths.push_back(fmt::format("temperature.{}.{}", i, parameter));
+  }
+  paths.push_back(parameter);
+  const auto position = [](const Mark& mark) { return std::pair(mark.line, mark.column); };
+  for (const std::string& path : paths) {
+    const Mark* first = nullptr;
+    for (const auto& [key, mark] : m.places) {
+      const bool is_of_it = key == path || key.starts_with(path + ".");
+      if (!is_of_it || mark.file != whole.file) continue; // what is not given stage.yaml has filled in
+      if (first == nullptr || position(mark) < position(*first)) first = &mark;
+    }
+    if (first != nullptr) return *first;
+  }
+  return whole;
 }
 
-std::string line_of(const std::string& place, const workflow::Material& m, const std::string& what) {
-  return fmt::format("{}: material `{}`: {}", place, m.name, what);
+Problem problem_of(const Mark& place, const workflow::Material& m, const std::string& what, bool error = true) {
+  return {place, fmt::format("material `{}`: {}", m.name, what), error};
 }
 
 [[noreturn]] void refuse(const workflow::Material& m, const std::string& what) {
-  throw base::InputError(line_of(to_string(m.mark), m, what));
-}
-
-void refuse(const std::vector<std::string>& errors) {
-  if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
+  throw base::InputError(to_string(problem_of(place_of(m), m, what)));
 }
 
 // Laws as the solver judges them.
@@ -95,50 +114,25 @@ std::vector<material::Fault> faults_at(const workflow::Material& m, double tempe
           return material::faults(stated(law));
         }
       },
-      workflow::law_at(m, temperature));
+      law_at(m, temperature));
 }
 
-std::string line_of(const workflow::Material& m, const material::Fault& fault, double temperature) {
+Problem problem_of(const workflow::Material& m, const material::Fault& fault, double temperature) {
   std::string at;
   if (!m.other.empty() && temperature != m.at) {
+    const bool has_own = std::ranges::any_of(m.other, [&](const auto& other) { return other.at == temperature; });
     at = fmt::format("at {:.4g} degC{}: ", celsius(temperature),
-                     m.other.contains(temperature) ? "" : ", between two temperatures of its table");
+                     has_own ? "" : ", between two temperatures of its table");
   }
-  return line_of(place_of(m, fault.parameter, temperature), m, at + fault.message);
+  return problem_of(place_of(m, fault.parameter, temperature), m, at + fault.message, fault.error);
 }
 
 // Why a material has no values for a temperature; empty: it has.
 std::string outside_of(const workflow::Material& m, double temperature) {
-  const auto range = workflow::temperatures_of(m);
+  const auto range = temperatures_of(m);
   if (!range || (temperature >= (*range)[0] && temperature <= (*range)[1])) return "";
   return fmt::format("its values are for {:.4g} to {:.4g} degC, not {:.4g} degC", celsius((*range)[0]),
                      celsius((*range)[1]), celsius(temperature));
-}
-
-// Errors of a material at its own temperature, at the others of its table and at `temperature`; warns of the rest. What
-// is the same at several is told once.
-std::vector<std::string> errors_of(const workflow::Material& m, double temperature) {
-  std::set<std::pair<std::string, std::string>> told; // parameter, message
-  std::vector<std::string> errors;
-  const auto judge = [&](double at) {
-    for (const material::Fault& fault : faults_at(m, at)) {
-      if (!told.emplace(fault.parameter, fault.message).second) continue;
-      const std::string line = line_of(m, fault, at);
-      if (fault.error) {
-        errors.push_back(line);
-      } else {
-        base::warn(line);
-      }
-    }
-  };
-  judge(m.at);
-  for (const auto& [at, law] : m.other) judge(at);
-  if (!errors.empty()) return errors; // between two laws of which one is none is none
-  if (const std::string outside = outside_of(m, temperature); !outside.empty()) {
-    return {line_of(to_string(m.mark), m, outside)};
-  }
-  judge(temperature);
-  return errors;
 }
 
 material::Law with_tension_field(const material::Law& law) {
@@ -164,10 +158,10 @@ public:
     if (const std::string outside = outside_of(m, temperature_); !outside.empty()) refuse(m, outside);
     std::vector<std::string> errors;
     for (const material::Fault& fault : faults_at(m, temperature_)) {
-      if (fault.error) errors.push_back(line_of(m, fault, temperature_));
+      if (fault.error) errors.push_back(to_string(problem_of(m, fault, temperature_)));
     }
-    refuse(errors);
-    return std::visit([&](const auto& law) { return make(m, law); }, workflow::law_at(m, temperature_));
+    if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
+    return std::visit([&](const auto& law) { return make(m, law); }, law_at(m, temperature_));
   }
 
 private:
@@ -184,11 +178,11 @@ private:
   }
 
   MaterialLaw make(const workflow::Material& m, const workflow::TableLaw& law) const {
-    const workflow::MissingTests missing = workflow::missing_tests(law);
+    if (law.fit_to) return fitted(m, law);
+    const test_data::MissingTests missing = test_data::missing_tests(law.points, law.has_axes());
     if (missing.useless) refuse(m, "its table cannot be fitted: " + missing.message);
     MaterialLaw made = fitted(m, law);
-    if (!law.fit_to.empty()) return made;
-    const std::array ratios = workflow::least_stress_ratios(law);
+    const std::array ratios = test_data::least_stress_ratios(law.points, law.has_axes());
     if (const double ratio = std::max(ratios[0], ratios[1]); std::isfinite(ratio)) made.least_stress_ratio = ratio;
     made.missing_tests = missing.message;
     return made;
@@ -208,7 +202,7 @@ private:
     std::vector<material::ShearPoint> shear;
     for (const workflow::TableLaw::ShearPoint& p : law.shear_points) shear.push_back({p.strain, p.stress, p.weight});
     std::optional<material::Law> model;
-    if (!law.fit_to.empty()) model = make(materials_.at(law.fit_to)).law;
+    if (law.fit_to) model = make(materials_.at(*law.fit_to)).law;
     try {
       if (law.kind == workflow::TableLaw::Kind::pd_nurbs) {
         const material::PdFit fit =
@@ -261,13 +255,49 @@ std::vector<std::string> warnings_of(const std::string& name, const MaterialLaw&
 
 } // namespace
 
-void check_laws(const std::map<std::string, workflow::Material>& materials, double temperature) {
-  std::vector<std::string> errors;
-  for (const auto& [name, m] : materials) {
-    const std::vector<std::string> more = errors_of(m, temperature);
-    errors.insert(errors.end(), more.begin(), more.end());
+std::vector<Problem> problems_of_law(const workflow::Material& m, double temperature) {
+  std::set<std::pair<std::string, std::string>> told; // parameter, message
+  std::vector<Problem> problems;
+  const auto judge = [&](double at) {
+    for (const material::Fault& fault : faults_at(m, at)) {
+      if (told.emplace(fault.parameter, fault.message).second) problems.push_back(problem_of(m, fault, at));
+    }
+  };
+  judge(m.at);
+  for (const auto& [at, law] : m.other) judge(at);
+  // between two laws of which one is none is none
+  if (std::ranges::any_of(problems, &Problem::error)) return problems;
+  if (const std::string outside = outside_of(m, temperature); !outside.empty()) {
+    problems.push_back(problem_of(place_of(m), m, outside));
+  } else {
+    judge(temperature);
   }
-  refuse(errors);
+  return problems;
+}
+
+void tell(std::vector<Problem> problems) {
+  const auto place = [](const Problem& p) { return std::tie(p.mark.file, p.mark.line, p.mark.column); };
+  std::ranges::stable_sort(problems, {}, place);
+  std::set<std::string> told;
+  std::string errors;
+  for (const Problem& problem : problems) {
+    const std::string line = to_string(problem);
+    if (!told.insert(line).second) continue;
+    if (problem.error) {
+      errors += (errors.empty() ? "" : "\n") + line;
+    } else {
+      fmt::print(stderr, "{}\n", line);
+    }
+  }
+  if (!errors.empty()) throw base::InputError(errors);
+}
+
+void check_laws(const std::map<std::string, workflow::Material>& materials, double temperature) {
+  std::vector<Problem> problems;
+  for (const auto& [name, m] : materials) {
+    for (Problem& problem : problems_of_law(m, temperature)) problems.push_back(std::move(problem));
+  }
+  tell(std::move(problems));
 }
 
 MaterialLaw law_of(const std::map<std::string, workflow::Material>& materials, const std::string& name,

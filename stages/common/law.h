@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/workflow/settings.h"
 #include "solver/material/nurbs_fit.h"
@@ -17,15 +18,22 @@ struct MaterialLaw {
   solver::material::Law law;
   std::optional<solver::material::FitReport> fit, shear_fit; // shear: of LE-NURBS
   std::string missing_tests = {};                            // what the points of its table leave open; empty: nothing
-  // Of points without a law that fills: workflow::least_stress_ratios, the larger one.
+  // Of points without a law that fills: test_data::least_stress_ratios, the larger one.
   std::optional<double> least_stress_ratio = {};
 };
 
 using MaterialLaws = std::map<std::string, MaterialLaw>; // by the name of the material
 
-// Judges the laws of these materials (solver/material/judgement.h) at every temperature of their tables and at
-// `temperature`, K; fits no table. Warns; throws InputError with all errors, a line each with its place in the user's
-// file.
+// What is wrong, or looks so, with the law of a material (solver/material/judgement.h) at every temperature of its
+// table and at `temperature`, K, each with its place in the user's file; what is the same at several once. Fits no
+// table.
+std::vector<pipeline::workflow::Problem> problems_of_law(const pipeline::workflow::Material& material,
+                                                         double temperature);
+
+// Tells each of these once, by place: prints warnings, throws InputError with all errors, a line each.
+void tell(std::vector<pipeline::workflow::Problem> problems);
+
+// Judges the laws of these materials and tells what is wrong with them.
 void check_laws(const std::map<std::string, pipeline::workflow::Material>& materials, double temperature);
 
 // The law of one of these materials at a temperature, K; its table is fitted, which takes a second or less. Throws

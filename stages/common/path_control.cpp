@@ -41,7 +41,7 @@ path::HeldDisplacement point_of(const Start& start, const workflow::Displacement
     throw base::InputError(fmt::format("{}the point ({}, {}) m of the control does not lie on foil `{}`: move it",
                                        where, number(control.at->x()), number(control.at->y()), control.foil));
   }
-  const Vec3 direction = control.direction.norm() > 0 ? control.direction : start.workflow.site.up.normalized();
+  const Vec3 direction = control.direction.value_or(start.workflow.site.up.normalized());
   path::HeldDisplacement held;
   double moves = 0;
   for (std::size_t a = 0; a < point->nodes.size(); ++a) {
@@ -65,17 +65,22 @@ path::HeldDisplacement point_of(const Start& start, const workflow::Displacement
 } // namespace
 
 std::optional<path::PathControl> path_control(const Start& start, const workflow::Control& control) {
-  if (const auto* c = std::get_if<workflow::DisplacementControl>(&control.kind)) {
+  if (const auto* c = std::get_if<workflow::DisplacementControl>(&control)) {
     if (c->at) return path::DisplacementPath{point_of(start, *c), c->until};
     return path::LargestDisplacementPath{block_of(start, c->foil), std::abs(c->until)};
   }
-  if (const auto* c = std::get_if<workflow::VolumeControl>(&control.kind)) {
+  if (const auto* c = std::get_if<workflow::VolumeControl>(&control)) {
     return path::VolumePath{chamber_of(start, c->chamber), c->until};
   }
-  if (const auto* c = std::get_if<workflow::ArcLengthControl>(&control.kind)) {
-    return path::ArcLengthPath{c->load_factor,          c->pressure,   c->volume,
-                               c->displacement,         c->after_peak, chamber_of(start, c->chamber),
-                               block_of(start, c->foil)};
+  if (const auto* c = std::get_if<workflow::ArcLengthControl>(&control)) {
+    const workflow::ArcTargets& until = c->until;
+    return path::ArcLengthPath{until.load_factor,
+                               until.pressure,
+                               until.volume,
+                               until.displacement,
+                               until.after_peak,
+                               chamber_of(start, c->chamber.value_or("")),
+                               block_of(start, c->foil.value_or(""))};
   }
   return std::nullopt;
 }

@@ -88,7 +88,8 @@ Start read_start(const char* kind, int argc, char** argv) {
     throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
                                        start.arguments.config.string(), stage.run, start.program, kind));
   }
-  if (needs_input) start.laws = laws_of(start.workflow);
+  check_laws(start.workflow.materials, start.workflow.site.temperature);
+  if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
   if (!needs_input || start.arguments.in.empty()) return start;
 
   start.state = pipeline::state::read_state(start.arguments.in);
@@ -133,6 +134,10 @@ std::string number(double value) {
 std::string place(const Workflow& workflow, const std::string& key) {
   const auto found = workflow.origins.find(key);
   return found == workflow.origins.end() ? "" : to_string(found->second) + ": ";
+}
+
+std::string place_of_foil(const Workflow& workflow, std::size_t foil) {
+  return place(workflow, fmt::format("cushion.foils.{}.name", foil));
 }
 
 } // namespace pneuma::stages::common

@@ -50,5 +50,6 @@ std::string number(double value);
 
 // Place of a key in the user's file, for messages: "cushion.yaml:14:22: ", or "" if the user did not write it.
 std::string place(const Workflow& workflow, const std::string& key);
+std::string place_of_foil(const Workflow& workflow, std::size_t foil);
 
 } // namespace pneuma::stages::common

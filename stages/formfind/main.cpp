@@ -57,8 +57,8 @@ int run(int argc, char** argv) {
   const auto& settings = std::get<workflow::FormfindSettings>(start.stage().settings);
   formfinding::Options options;
   options.rule = start.state.stress_rule;
-  if (start.stage().options.tolerance) options.tolerance = *start.stage().options.tolerance;
-  if (start.stage().options.max_iterations) options.max_updates = *start.stage().options.max_iterations;
+  if (settings.options.tolerance) options.tolerance = *settings.options.tolerance;
+  if (settings.options.max_iterations) options.max_updates = *settings.options.max_iterations;
 
   State state = start.state;
   const std::vector<Vec3> flat = state.mesh.nodes;

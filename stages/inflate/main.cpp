@@ -26,9 +26,10 @@ std::vector<double> predeformation(const common::Start& start, std::size_t foil,
     if (n != last_force) { // the same everywhere in an isotropic film
       const auto found = solver::material::predeformation(law, settings.thickness, n);
       if (!found) {
-        throw base::InputError(fmt::format("{}: foil `{}` cannot carry a prestress of {} N/m (without yielding): lower "
+        throw base::InputError(fmt::format("{}foil `{}` cannot carry a prestress of {} N/m (without yielding): lower "
                                            "it, or take a thicker, stiffer or stronger foil",
-                                           to_string(settings.mark), settings.name, common::number(n.maxCoeff())));
+                                           common::place_of_foil(start.workflow, foil), settings.name,
+                                           common::number(n.maxCoeff())));
       }
       last_force = n;
       last = *found;
@@ -44,8 +45,7 @@ int run(int argc, char** argv) {
   const auto& settings = std::get<workflow::InflateSettings>(start.stage().settings);
   common::Drive drive;
   drive.state = start.state;
-  drive.contact_stops = settings.contact_stops;
-  drive.control = settings.control;
+  drive.path = settings;
 
   const bool from_form = start.stage().from_run == "formfind";
   const bool from_strips = start.stage().from_run == "pattern";
@@ -85,7 +85,7 @@ int run(int argc, char** argv) {
       drive.load_at_one = reached;
     }
   }
-  if (!std::holds_alternative<workflow::LoadControl>(settings.control.kind)) {
+  if (!std::holds_alternative<workflow::LoadControl>(settings.control)) {
     bool drives = false;
     for (const auto& chamber : drive.model.chambers) {
       const auto& ramp = std::get<solver::chamber::Regulated>(chamber.gas);

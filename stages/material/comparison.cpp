@@ -8,6 +8,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/schema/text.h"
 #include "pipeline/test_data/test_data.h"
 
 namespace pneuma::stages::material {
@@ -70,12 +71,27 @@ TestCurve read_test(const std::filesystem::path& file) {
   std::vector<pipeline::schema::Problem> problems;
   const std::string name = file.generic_string();
   const std::string text = pipeline::schema::read_text(file, {"--data", 0, 0}, problems);
-  if (!problems.empty()) throw base::InputError(fmt::format("--data: {}", problems.front().message));
+  if (!problems.empty()) {
+    throw base::InputError(fmt::format("--data: {}", pipeline::schema::printable(problems.front().message)));
+  }
   const bool has_shear = text.find("shear_strain") != std::string::npos;
   const bool is_shear = has_shear && text.find("strain_1") == std::string::npos;
   const std::vector<std::string> needed = is_shear ? std::vector<std::string>{"shear_strain", "shear_stress"}
                                                    : std::vector<std::string>{"strain_1", "stress_1"};
   const auto rows = test_data::parse(text, name, test_data::Measure::engineering, needed, problems);
+  for (const test_data::Row& row : rows) {
+    double strain = 0;
+    for (const double one : {row.strain_1, row.strain_2, row.shear_strain}) {
+      if (std::abs(one) > std::abs(strain)) strain = one;
+    }
+    if (std::abs(strain) <= most_strain) continue;
+    pipeline::schema::Problem problem;
+    problem.mark = {name, row.line, 1};
+    problem.message = fmt::format("a strain of {:.4g} %: tests are compared up to {:g} %; is its unit right?",
+                                  100 * strain, 100 * most_strain);
+    problems.push_back(std::move(problem));
+    break; // the unit is that of all rows
+  }
   std::vector<std::string> errors;
   for (const auto& problem : problems) {
     if (problem.error) {
@@ -151,7 +167,8 @@ Misfit misfit(const law::Law& material, const TestCurve& test, const Options& op
       duration = std::abs(way) / *rate;
     }
     constexpr double rounding = 1e-9;
-    const double of_curve = std::ceil(std::abs(way) * options.steps / options.strain - rounding);
+    constexpr double most = 10000; // from row to row, where the curves are short
+    const double of_curve = std::min(std::ceil(std::abs(way) * options.steps / options.strain - rounding), most);
     const int steps = std::max(1, static_cast<int>(of_curve)) * (duration > 0 ? steps_in_time : 1);
     for (int i = 1; i <= steps && result.end.empty(); ++i) {
       if (piece.advance(control, from + way * i / steps, duration / steps)) continue;

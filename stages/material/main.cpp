@@ -8,9 +8,11 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
-#include "pipeline/schema/command_line.h"
 #include "pipeline/schema/spelling.h"
+#include "pipeline/workflow/materials.h"
+#include "stages/common/command_line.h"
 #include "stages/common/law.h"
+#include "stages/common/law_at.h"
 #include "stages/material/fit.h"
 #include "stages/material/report.h"
 
@@ -77,10 +79,23 @@ public:
       : options_(options), materials_(materials), tests_(tests), test_temperature_(common_temperature(tests)),
         drawn_tests_(tests) {}
 
+  // What is wrong with the laws of these materials, and of what they are fitted to, before any is shown.
+  void check(const std::vector<workflow::Material>& materials) const {
+    std::vector<workflow::Problem> problems;
+    for (const workflow::Material& material : materials) {
+      for (const std::string& name : workflow::with_fits(materials_, {material.name})) {
+        for (workflow::Problem& problem : common::problems_of_law(materials_.at(name), temperature_for(material))) {
+          problems.push_back(std::move(problem));
+        }
+      }
+    }
+    common::tell(std::move(problems));
+  }
+
   void show(const workflow::Material& material) {
     std::map<std::string, workflow::Material> taut = materials_;
     taut.at(material.name).tension_field = false;
-    say(fmt::format("{}{}", material.name, material.source.empty() ? "" : ": " + material.source));
+    say(fmt::format("{}{}", material.name, material.source ? ": " + *material.source : ""));
     if (!temperatures_of(material) && (options_.temperature || is_measured_elsewhere())) {
       say("  does not depend on the temperature");
     }
@@ -109,7 +124,7 @@ public:
           if constexpr (requires { law.nu; }) nu = law.nu;
           if constexpr (requires { law.logarithmic; }) logarithmic = law.logarithmic;
         },
-        workflow::law_at(material, temperature_for(material)));
+        common::law_at(material, temperature_for(material)));
     const FittedLaw fitted = fit(test, options_, nu, logarithmic);
     const std::size_t count = fitted.hardening.branches.size();
     const std::string name = fmt::format("{}_{}", material.name, count);
@@ -164,7 +179,9 @@ private:
     }
   }
 
-  double temperature_without_tests() const { return options_.temperature.value_or(workflow::Site().temperature); }
+  double temperature_without_tests() const {
+    return options_.temperature.value_or(pipeline::schema::defaults<workflow::Site>().temperature);
+  }
 
   // Of the curves: what is asked for, or that of the tests where the material has values there.
   double temperature_for(const workflow::Material& material) const {
@@ -180,13 +197,14 @@ private:
   // Where a material has values: between its own temperatures, or those of what its table is fitted to.
   std::optional<std::array<double, 2>> temperatures_of(const workflow::Material& material) const {
     const auto* table = std::get_if<workflow::TableLaw>(&material.law);
-    if (table != nullptr && !table->fit_to.empty()) return temperatures_of(materials_.at(table->fit_to));
-    return workflow::temperatures_of(material);
+    if (table != nullptr && table->fit_to) return temperatures_of(materials_.at(*table->fit_to));
+    return common::temperatures_of(material);
   }
 
   bool is_measured_elsewhere() const {
     return std::any_of(tests_.begin(), tests_.end(), [](const TestCurve& test) {
-      return test.temperature && std::abs(*test.temperature - workflow::Site().temperature) > same_temperature;
+      return test.temperature &&
+             std::abs(*test.temperature - pipeline::schema::defaults<workflow::Site>().temperature) > same_temperature;
     });
   }
 
@@ -226,7 +244,7 @@ private:
 };
 
 int run(int argc, char** argv) {
-  if (pipeline::schema::asks_for_help(argc, argv)) {
+  if (common::asks_for_help(argc, argv)) {
     std::puts(usage());
     return 0;
   }
@@ -244,6 +262,7 @@ int run(int argc, char** argv) {
     throw base::InputError(fmt::format("--fit fits one material; name one of the {}", materials.size()));
   }
   Bench bench(options, read.known, tests);
+  bench.check(materials);
   for (const workflow::Material& material : materials) bench.show(material);
   if (options.branches > 0) bench.show_fit(materials.front());
   bench.write();

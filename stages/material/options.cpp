@@ -8,16 +8,16 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
-#include "pipeline/schema/command_line.h"
 #include "pipeline/schema/quantity.h"
+#include "stages/common/command_line.h"
 
 namespace pneuma::stages::material {
 
 namespace {
 
 using base::InputError;
+using common::Words;
 using pipeline::schema::parse_number;
-using pipeline::schema::Words;
 
 // A number in `unit` or, with a unit behind it, any quantity of its kind.
 double quantity(const std::string& option, const std::string& text, const std::string& unit) {
@@ -47,8 +47,9 @@ std::vector<std::string> parts(const std::string& text) {
 
 void set_strain(Options& options, const std::string& text) {
   options.strain = quantity("--strain", text, "1");
-  if (!(options.strain > 0 && options.strain <= 10)) {
-    throw InputError(fmt::format("--strain: `{}` is not above 0 and up to 10 (1000 %)", text));
+  if (!(options.strain > 0 && options.strain <= most_strain)) {
+    throw InputError(
+        fmt::format("--strain: `{}` is not above 0 and up to {:g} ({:g} %)", text, most_strain, 100 * most_strain));
   }
   constexpr double usual = 5;
   if (options.strain >= usual && parse_number(text)) {
@@ -94,8 +95,8 @@ void set_angle(Options& options, const std::string& text) {
   options.angle = read.value;
 }
 
-const std::vector<pipeline::schema::Switch<Options>>& switches() {
-  static const std::vector<pipeline::schema::Switch<Options>> all = {
+const std::vector<common::Switch<Options>>& switches() {
+  static const std::vector<common::Switch<Options>> all = {
       {"--strain", 1, [](Options& o, const Words& v) { set_strain(o, v[0]); }},
       {"--steps", 1, [](Options& o, const Words& v) { o.steps = whole("--steps", v[0], 10, 100000); }},
       {"--ratios", 1, [](Options& o, const Words& v) { set_ratios(o, v[0]); }},
@@ -140,7 +141,7 @@ const char* usage() {
 Options parse(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  pipeline::schema::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
+  common::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
     if (options.materials.empty()) {
       options.materials = word;
     } else {

@@ -16,6 +16,8 @@ struct Ratio {
 inline constexpr Ratio pure_shear = {0, 0, true};
 std::string name_of(const Ratio& ratio); // "uniaxial", "2:1", "shear"
 
+inline constexpr double most_strain = 10; // of curves and tests
+
 // What the command line asks for.
 struct Options {
   std::filesystem::path materials;

@@ -23,8 +23,8 @@ geometry::Mesh make_mesh(const workflow::Cushion& cushion, const workflow::MeshS
   options.size = settings.size;
   options.divisions = settings.divisions;
   const bool has_regular_pattern = !std::holds_alternative<geometry::Polygon>(cushion.plan);
-  const bool structured = settings.pattern == workflow::MeshPattern::structured ||
-                          (settings.pattern == workflow::MeshPattern::automatic && has_regular_pattern);
+  const bool structured =
+      settings.pattern == workflow::MeshPattern::structured || (!settings.pattern && has_regular_pattern);
   options.pattern = structured ? meshing::Pattern::structured : meshing::Pattern::unstructured;
   const geometry::Mesh plan = meshing::mesh_plan(cushion.plan, options);
   std::vector<meshing::Layer> layers;
@@ -73,8 +73,8 @@ common::State make_state(const common::Start& start) {
   for (const workflow::ChamberSettings& chamber : w.cushion.chambers) {
     pipeline::state::Chamber data;
     data.name = chamber.name;
-    data.outer = block_of(chamber.outer);
-    data.inner = block_of(chamber.inner);
+    data.outer = block_of(chamber.between[0]);
+    data.inner = block_of(chamber.between[1]);
     data.dead_volume = chamber.dead_volume;
     data.volume = chamber.dead_volume; // the foils lie on each other
     data.ambient_pressure = w.site.ambient_pressure.pascal;
@@ -108,9 +108,9 @@ int run(int argc, char** argv) {
     }
   }
   if (!errors.empty()) throw base::GeometryError("the mesh is not fit for computing:\n" + errors);
+  if (start.arguments.check) return 0;
   base::say(fmt::format("{} nodes, {} elements {} in {} blocks", state.mesh.nodes.size(), elements,
                         geometry::name_of(state.mesh.element), state.mesh.blocks.size()));
-  if (start.arguments.check) return 0;
   pipeline::state::write_state(state, start.arguments.out);
   summary.set("stage", "mesh");
   summary.set("id", start.stage().id);

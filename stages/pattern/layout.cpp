@@ -177,7 +177,7 @@ private:
       strip_names.push_back(outline.name);
       trial.width.push_back(cuts.back().high.y() - cuts.back().low.y());
     }
-    const workflow::Roll& roll = settings_.roll;
+    const workflow::Roll roll = settings_.roll_or_usual();
     const double roll_width = std::max(roll.width, fabrication::roll_width_for(cuts, roll.selvedge));
     trial.waste = fabrication::nest(cuts, strip_names, roll_width, roll.selvedge, RollSheet{}.gap).waste_fraction;
     for (const solver::flattening::PointStretch& s : flat.stretches) {
@@ -273,9 +273,10 @@ private:
   }
 
   Layout fewest_strips(double direction) const {
-    const double usable = settings_.roll.width - 2 * settings_.roll.selvedge;
+    const workflow::Roll roll = settings_.roll_or_usual();
+    const double usable = roll.width - 2 * roll.selvedge;
     const auto [low, high] = extent_across(surface_.plan, direction);
-    const int first = std::max(least_, static_cast<int>(std::ceil((high - low) / (usable - settings_.roll.weld))));
+    const int first = std::max(least_, static_cast<int>(std::ceil((high - low) / (usable - roll.weld))));
     double widest = 0;
     std::string refusal;
     for (int count = first; count < first + 6; ++count) {
@@ -316,7 +317,7 @@ Layout lay_out(const strips::Surface& surface, const workflow::PatternSettings& 
 }
 
 fabrication::Allowances allowances_of(const workflow::PatternSettings& settings) {
-  return {settings.roll.weld / 2, settings.clamp_allowance, settings.notch_spacing};
+  return {settings.roll_or_usual().weld / 2, settings.allowance.clamp, settings.allowance.notches};
 }
 
 double element_size(const std::vector<strips::Cut>& cuts) {

@@ -31,9 +31,9 @@ std::vector<std::size_t> foils_to_cut(const common::Start& start, const workflow
   for (std::size_t b = 0; b < start.workflow.cushion.foils.size(); ++b) {
     const bool is_flat = geometry::deepest_point(mesh, mesh.blocks[b], mesh.nodes, plane).distance < flat;
     const bool named =
-        std::find(settings.foils.begin(), settings.foils.end(), mesh.blocks[b].name) != settings.foils.end();
+        settings.foils && std::ranges::find(*settings.foils, mesh.blocks[b].name) != settings.foils->end();
     const bool wanted = settings.curves.empty() ? !is_flat : settings.curves.contains(mesh.blocks[b].name);
-    if (settings.foils.empty() ? wanted : named) chosen.push_back(b);
+    if (settings.foils ? named : wanted) chosen.push_back(b);
   }
   if (chosen.empty()) {
     throw base::InputError(common::place(start.workflow, "stages." + start.stage().id + ".from") +
@@ -70,7 +70,7 @@ Layout lay_out_at_place(const common::Start& start, const workflow::PatternSetti
     std::string message = error.what();
     const std::string name = fmt::format("foil `{}`: ", foil);
     if (!message.starts_with(name)) message = name + message;
-    if (!settings.strips_per_foil && settings.roll_given && !settings.curves.contains(foil)) {
+    if (!settings.strips_per_foil && settings.roll && !settings.curves.contains(foil)) {
       message += "; the roll asks for so many strips, and a wider roll for fewer";
     }
     throw base::GeometryError(cutting_place(start, foil) + message);
@@ -85,21 +85,19 @@ Wanted wanted_of(const common::Start& start, const workflow::PatternSettings& se
   const double tension = prestress.empty() ? 0 : prestress.front();
   const auto elastic = elastic_stretch(start.laws.at(foil.material).law, foil.thickness, tension);
   if (!elastic) {
-    throw base::InputError(fmt::format("{}: foil `{}` cannot carry the prestress of {} N/m that its form was found for",
-                                       to_string(foil.mark), foil.name, common::number(tension)));
+    throw base::InputError(fmt::format("{}foil `{}` cannot carry the prestress of {} N/m that its form was found for",
+                                       common::place_of_foil(start.workflow, b), foil.name, common::number(tension)));
   }
   Wanted wanted;
   wanted.direction = direction;
   wanted.decompensation = settings.decompensation;
   wanted.weight = elastic->weight;
-  const workflow::SolverOptions& options = start.stage().options;
+  const workflow::SolverOptions& options = settings.options;
   if (options.tolerance) wanted.options.tolerance = *options.tolerance;
   if (options.max_iterations) wanted.options.max_iterations = *options.max_iterations;
-  const workflow::Compensation& compensation = settings.compensation;
-  if (compensation.kind == workflow::Compensation::Kind::elastic) {
-    wanted.stretch = elastic->stretch / (1 - compensation.creep);
-  } else if (compensation.kind == workflow::Compensation::Kind::given) {
-    wanted.stretch = Vec3(1 / (1 - compensation.warp), 1 / (1 - compensation.weft), 0);
+  if (settings.by_strain()) wanted.stretch = elastic->stretch / (1 - settings.creep);
+  if (const auto* given = std::get_if<workflow::GivenCompensation>(&settings.compensation)) {
+    wanted.stretch = Vec3(1 / (1 - given->warp), 1 / (1 - given->weft), 0);
   }
   return wanted;
 }
@@ -164,8 +162,9 @@ Welded cut_and_flatten(const common::Start& start, const workflow::PatternSettin
         fmt::format("{}foil `{}`: ", common::place(start.workflow, "stages." + start.stage().id + ".from"), block.name),
         [&] { return strips::prepare(start.workflow.cushion.plan, mesh, block, mesh.nodes); }));
   }
-  const bool roll_decides = settings.roll_given && !settings.strips_per_foil && settings.curves.empty();
-  const double usable = settings.roll.width - 2 * settings.roll.selvedge;
+  const bool roll_decides = settings.roll && !settings.strips_per_foil && settings.curves.empty();
+  const workflow::Roll roll = settings.roll_or_usual();
+  const double usable = roll.width - 2 * roll.selvedge;
   std::vector<int> least(mesh.blocks.size(), 2);
   for (int attempts = roll_decides ? 4 : 1;; --attempts) {
     Welded welded = cut_once(start, settings, chosen, surfaces, least);
@@ -193,10 +192,10 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
        outlines(*welded.flat[b], welded.state.mesh, static_cast<base::Index>(b))) {
     sheets.push_back({std::move(strip), quality[sheets.size()].distortion});
   }
-  const workflow::Roll& roll = settings.roll;
+  const workflow::Roll roll = settings.roll_or_usual();
   return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
     return fabricate(welded.state.mesh.blocks[b].name, sheets, allowances_of(settings),
-                     {roll.width, roll.selvedge, RollSheet{}.gap, !settings.roll_given});
+                     {roll.width, roll.selvedge, RollSheet{}.gap, !settings.roll});
   });
 }
 
@@ -240,10 +239,10 @@ int run(int argc, char** argv) {
     const Fabrication& made = sheets[name] = draw(start, settings, welded, b, quality);
     report_strips(quality, made, name, summary);
     summary.set("patterns." + name + ".direction", welded.wanted[b]->direction);
-    if (made.roll_width > settings.roll.width) {
+    if (made.roll_width > settings.roll_or_usual().width) {
       const std::string warning = fmt::format("the strips of foil `{}` need a roll of {:.0f} mm, {:.0f} mm are usual: "
                                               "take more strips, or name the roll",
-                                              name, 1e3 * made.roll_width, 1e3 * settings.roll.width);
+                                              name, 1e3 * made.roll_width, 1e3 * settings.roll_or_usual().width);
       base::warn(warning);
       summary.append("warnings", warning);
     }

@@ -3,14 +3,14 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
-#include "pipeline/schema/command_line.h"
 #include "pipeline/state/state_file.h"
+#include "stages/common/command_line.h"
 #include "stages/picture/draw.h"
 
 namespace pneuma::stages::picture {
 
 int run(int argc, char** argv) {
-  if (pipeline::schema::asks_for_help(argc, argv)) {
+  if (common::asks_for_help(argc, argv)) {
     std::puts(usage());
     return 0;
   }

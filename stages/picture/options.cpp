@@ -9,15 +9,15 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
-#include "pipeline/schema/command_line.h"
+#include "stages/common/command_line.h"
 
 namespace pneuma::stages::picture {
 
 namespace {
 
 using base::InputError;
+using common::Words;
 using pipeline::schema::suggestion;
-using pipeline::schema::Words;
 
 template <class Number>
 Number number(const std::string& option, const std::string& text) {
@@ -69,8 +69,8 @@ void set_view(Options& options, const std::string& text) {
       fmt::format("--view: '{}' is none of {}{}", text, pipeline::schema::joined(names), suggestion(text, names)));
 }
 
-const std::vector<pipeline::schema::Switch<Options>>& switches() {
-  static const std::vector<pipeline::schema::Switch<Options>> all = {
+const std::vector<common::Switch<Options>>& switches() {
+  static const std::vector<common::Switch<Options>> all = {
       {"--field", 1, [](Options& o, const Words& v) { o.field = v[0]; }},
       {"--out", 1, [](Options& o, const Words& v) { o.out = v[0]; }},
       {"--size", 1, [](Options& o, const Words& v) { set_size(o, v[0]); }},
@@ -101,7 +101,7 @@ const char* usage() {
 Options parse(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   Options options;
-  pipeline::schema::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
+  common::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
     if (!options.state.empty()) {
       throw InputError(fmt::format("two states: {} and {}", options.state.string(), word));
     }

@@ -20,16 +20,22 @@ using common::Index;
 using common::Vec3;
 using common::VecX;
 
-geometry::PlanRegion region_of(const workflow::Region& region) {
-  if (const auto* box = std::get_if<workflow::PlanBox>(&region)) {
-    return geometry::PlanRectangle{{box->x[0], box->y[0]}, {box->x[1], box->y[1]}};
-  }
-  if (const auto* polygon = std::get_if<workflow::PlanPolygon>(&region)) return geometry::PlanPolygon{*polygon};
-  return geometry::WholePlan{};
+geometry::PlanRegion region_of(const std::optional<workflow::Region>& region) {
+  if (!region) return geometry::WholePlan{};
+  if (region->polygon) return geometry::PlanPolygon{*region->polygon};
+  const auto &x = *region->x, &y = *region->y;
+  return geometry::PlanRectangle{{x[0], y[0]}, {x[1], y[1]}};
+}
+
+// Place of a load in the user's file, for messages.
+std::string place_of_load(const common::Start& start, const workflow::WindSettings& settings,
+                          const workflow::Load& load) {
+  const auto i = &load - settings.loads.data();
+  return common::place(start.workflow, fmt::format("stages.{}.loads.{}.name", start.stage().id, i));
 }
 
 // The load at factor 1.
-pipeline::state::Load load_of(const workflow::Load& load, const common::Start& start) {
+pipeline::state::Load load_of(const workflow::Load& load, const std::string& where, const common::Start& start) {
   const geometry::Mesh& mesh = start.state.mesh;
   const std::vector<workflow::FoilSettings>& foils = start.workflow.cushion.foils;
   Index block = 0;
@@ -43,8 +49,8 @@ pipeline::state::Load load_of(const workflow::Load& load, const common::Start& s
   const auto loaded = [&] {
     geometry::RegionQuadrature inside = quadrature(region_of(load.region));
     if (!(geometry::plan_area(mesh, foil, mesh.nodes, inside) > 0)) {
-      throw base::InputError(fmt::format("{}: load `{}`: nothing of its region lies on foil `{}`: move it",
-                                         to_string(load.mark), load.name, foil.name));
+      throw base::InputError(
+          fmt::format("{}load `{}`: nothing of its region lies on foil `{}`: move it", where, load.name, foil.name));
     }
     return inside;
   };
@@ -57,7 +63,7 @@ pipeline::state::Load load_of(const workflow::Load& load, const common::Start& s
   if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
     // the first foil shows its weather face (normal outwards), the last of several its room face
     out.pressure = (block == 0 ? -1 : 1) * wind->pressure;
-    if (!std::holds_alternative<std::monostate>(load.region)) {
+    if (load.region) {
       solver::assembly::PressureZone zone = solver::load::pressure_zone(mesh, block, loaded());
       out.offset = std::move(zone.offset);
       out.points = std::move(zone.points);
@@ -66,20 +72,19 @@ pipeline::state::Load load_of(const workflow::Load& load, const common::Start& s
     dead(loaded(), -snow->weight * start.workflow.site.up.normalized());
   } else {
     const auto& patch = std::get<workflow::PatchLoad>(load.kind);
-    if (!std::holds_alternative<std::monostate>(load.region)) {
+    if (load.region) {
       throw base::InputError(
-          fmt::format("{}: load `{}`: a patch says its own place with center and size; region does not go with it",
-                      to_string(load.mark), load.name));
+          fmt::format("{}load `{}`: a patch says its own place with center and size; region does not go with it", where,
+                      load.name));
     }
     const geometry::RegionQuadrature inside =
         quadrature(geometry::PlanRectangle{patch.center - 0.5 * patch.size, patch.center + 0.5 * patch.size});
     const double area = geometry::plan_area(mesh, foil, mesh.nodes, inside);
     const double wanted = patch.size.x() * patch.size.y();
     if (area < (1 - 1e-6) * wanted) {
-      throw base::InputError(
-          fmt::format("{}: load `{}`: only {} of the patch's {} m2 lie on foil `{}`: move it or make "
-                      "it smaller",
-                      to_string(load.mark), load.name, common::number(area), common::number(wanted), foil.name));
+      throw base::InputError(fmt::format("{}load `{}`: only {} of the patch's {} m2 lie on foil `{}`: move it or make "
+                                         "it smaller",
+                                         where, load.name, common::number(area), common::number(wanted), foil.name));
     }
     dead(inside, patch.force / area);
   }
@@ -92,26 +97,29 @@ std::vector<common::DrivenLoad> carried_loads(const common::Start& start, const 
   std::vector<common::DrivenLoad> loads;
   std::vector<std::string> names;
   for (const pipeline::state::Load& load : start.state.loads) {
-    const auto factor = settings.carried.find(load.name);
-    loads.push_back({load, 1, factor == settings.carried.end() ? 1 : factor->second});
+    const auto factor = settings.factors.find(load.name);
+    loads.push_back({load, 1, factor == settings.factors.end() ? 1 : factor->second});
     names.push_back(load.name);
     modelled.push_back(fmt::format("load {}: of the state before, {}", load.name,
-                                   factor == settings.carried.end()
+                                   factor == settings.factors.end()
                                        ? "stays as it is"
                                        : fmt::format("goes to {} of what it was", common::number(factor->second))));
   }
-  for (const auto& [name, factor] : settings.carried) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+  for (const auto& [name, factor] : settings.factors) {
+    const bool is_own = std::any_of(settings.loads.begin(), settings.loads.end(),
+                                    [&](const workflow::Load& load) { return load.name == name; });
+    if (is_own || std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw base::InputError(
-        fmt::format("`factors` names load `{}`, which does not act in the state that the stage "
+        fmt::format("{}`factors` names load `{}`, which does not act in the state that the stage "
                     "starts from; there {}",
-                    name, names.empty() ? "no load does" : fmt::format("act: {}", fmt::join(names, ", "))));
+                    common::place(start.workflow, fmt::format("stages.{}.factors.{}", start.stage().id, name)), name,
+                    names.empty() ? "no load does" : fmt::format("act: {}", fmt::join(names, ", "))));
   }
   for (const workflow::Load& own : settings.loads) {
     if (std::find(names.begin(), names.end(), own.name) == names.end()) continue;
-    throw base::InputError(fmt::format("{}: load `{}` acts in the state that the stage starts from: to change it give "
+    throw base::InputError(fmt::format("{}load `{}` acts in the state that the stage starts from: to change it give "
                                        "its factor in `factors`, or choose another name",
-                                       to_string(own.mark), own.name));
+                                       place_of_load(start, settings, own), own.name));
   }
   return loads;
 }
@@ -152,8 +160,7 @@ int run(int argc, char** argv) {
   const auto& settings = std::get<workflow::WindSettings>(start.stage().settings);
   common::Drive drive;
   drive.state = start.state;
-  drive.contact_stops = settings.contact_stops;
-  drive.control = settings.control;
+  drive.path = settings;
   drive.model = common::make_model(start, drive.state, 1, 1);
   const std::vector<pipeline::state::Chamber>& chambers = drive.state.chambers;
   for (std::size_t c = 0; c < chambers.size(); ++c) {
@@ -172,23 +179,25 @@ int run(int argc, char** argv) {
   }
   drive.loads = carried_loads(start, settings, drive.modelled);
   for (const workflow::Load& load : settings.loads) {
-    drive.loads.push_back({load_of(load, start), 0, load.factor});
+    drive.loads.push_back(
+        {load_of(load, place_of_load(start, settings, load), start), 0, settings.factors.at(load.name)});
     constexpr const char* kinds[] = {"wind as a pressure that follows the foil", "snow as a dead load on the plan",
                                      "patch as a dead load on the plan"};
     drive.modelled.push_back(fmt::format("load {}: {}", load.name, kinds[load.kind.index()]));
   }
   for (const common::DrivenLoad& driven : drive.loads) common::add_load(driven, drive.model);
-  if (settings.loads.size() == 1 && settings.carried.empty()) { // then the load has a name and a unit of its own
+  if (settings.loads.size() == 1 && settings.factors.size() == 1) { // then the load has a name and a unit of its own
     const workflow::Load& load = settings.loads.front();
+    const double factor = settings.factors.at(load.name);
     if (const auto* wind = std::get_if<workflow::WindLoad>(&load.kind)) {
       drive.load_name = "wind";
-      drive.load_at_one = load.factor * wind->pressure;
+      drive.load_at_one = factor * wind->pressure;
     } else if (const auto* snow = std::get_if<workflow::SnowLoad>(&load.kind)) {
       drive.load_name = "snow";
-      drive.load_at_one = load.factor * snow->weight;
+      drive.load_at_one = factor * snow->weight;
     } else {
       drive.load_name = "patch";
-      drive.load_at_one = load.factor * std::get<workflow::PatchLoad>(load.kind).force.norm();
+      drive.load_at_one = factor * std::get<workflow::PatchLoad>(load.kind).force.norm();
     }
   }
   common::run_equilibrium(start, std::move(drive));

@@ -24,13 +24,20 @@ using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
 // `fail-ID`: ends with the code in it; `slow-ID`: works for a minute; `meet-ID`: needs the stage named in it at its
-// side.
+// side. `check-KIND`: commands that answer --check, with the settings in `$config`; each check is noted in `checks`.
 constexpr const char* script = R"sh(#!/bin/sh
+here=$(dirname "$0")
+if [ "$1" = --check ]; then
+  config=$3
+  kind=$(basename "$0")
+  echo "${kind#pneuma-}" >>"$here/checks"
+  [ -f "$here/check-${kind#pneuma-}" ] && . "$here/check-${kind#pneuma-}"
+  exit 0
+fi
 while [ $# -gt 0 ]; do
   case "$1" in --config) config=$2 ;; --in) in=$2 ;; --out) out=$2 ;; --threads) threads=$2 ;; esac
   shift 2
 done
-here=$(dirname "$0")
 id=$(basename "$(dirname "$config")")
 echo "$id" >>"$here/runs"
 echo "threads $threads"
@@ -109,16 +116,18 @@ protected:
   }
 
   Outcome pneuma(const std::vector<std::string>& words) const {
-    std::filesystem::remove(folder.path() / "bin" / "runs");
+    for (const char* notes : {"runs", "checks"}) std::filesystem::remove(folder.path() / "bin" / notes);
     return end_of(start(words));
   }
 
   // Stages that ran in the last call, in the order of their start.
-  std::vector<std::string> ran() const {
-    std::istringstream lines(text_of(folder.path() / "bin" / "runs"));
-    std::vector<std::string> ids;
-    for (std::string id; std::getline(lines, id);) ids.push_back(id);
-    return ids;
+  std::vector<std::string> ran() const { return noted("runs"); }
+
+  std::vector<std::string> noted(const std::string& notes) const {
+    std::istringstream lines(text_of(folder.path() / "bin" / notes));
+    std::vector<std::string> all;
+    for (std::string one; std::getline(lines, one);) all.push_back(one);
+    return all;
   }
 
   bool has_started(const std::string& id) const {
@@ -239,7 +248,7 @@ TEST_F(RunnerTest, StageThatLeavesNoGoodStateHasFailed) {
 }
 
 TEST_F(RunnerTest, StageKilledByASignalHasFailed) {
-  folder.write("bin/pneuma-inflate", "#!/bin/sh\nkill -SEGV $$\n");
+  folder.write("bin/pneuma-inflate", "#!/bin/sh\n[ \"$1\" = --check ] && exit 0\nkill -SEGV $$\n");
   const Outcome outcome = pneuma({"w.yaml"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.text, HasSubstr("inflated: failed: ended by signal 11"));
@@ -292,7 +301,8 @@ TEST_F(RunnerTest, InterruptGives130AndKeepsWhatIsDone) {
 }
 
 TEST_F(RunnerTest, SecondInterruptKillsAStageThatDoesNotListen) {
-  folder.write("bin/pneuma-wind", "#!/bin/sh\ntrap '' INT\necho $$ >\"$(dirname \"$0\")/started-wind\"\nsleep 60\n");
+  folder.write("bin/pneuma-wind", "#!/bin/sh\n[ \"$1\" = --check ] && exit 0\ntrap '' INT\necho $$ >\"$(dirname "
+                                  "\"$0\")/started-wind\"\nsleep 60\n");
   const pid_t pid = start({"w.yaml"});
   ASSERT_TRUE(has_started("wind"));
   kill(pid, SIGINT);
@@ -350,6 +360,94 @@ TEST_F(RunnerTest, CheckFindsAllErrorsOrSaysOk) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.text, HasSubstr("w.yaml:4:40: `nu`"));
   EXPECT_THAT(outcome.text, HasSubstr("w.yaml:15:27: `size`"));
+}
+
+TEST_F(RunnerTest, CheckAsksTheProgramOfEachKindOnce) {
+  EXPECT_EQ(pneuma({"check", "w.yaml"}).code, 0);
+  EXPECT_THAT(noted("checks"), UnorderedElementsAre("mesh", "formfind", "inflate", "wind")); // two wind stages
+  EXPECT_THAT(ran(), IsEmpty());
+  change("size: 0.15 m", "size: 0.15 kg");
+  pneuma({"check", "w.yaml"});
+  EXPECT_THAT(noted("checks"), IsEmpty());
+}
+
+TEST_F(RunnerTest, RunAsksAllProgramsButTheFirstBeforeItComputes) { // whose check is its work
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_THAT(noted("checks"), UnorderedElementsAre("formfind", "inflate", "wind"));
+}
+
+TEST_F(RunnerTest, WhatSeveralProgramsFindIsToldOnceAtItsPlace) {
+  // the place is that which stage.yaml names
+  const std::string place = "place=$(sed -n 's/.*materials.etfe.nu: \"\\(.*\\)\"/\\1/p' \"$config\")\n";
+  const std::string both = place + "echo \"$place: warning: strange\"\necho \"$place: wrong\" >&2\nexit 2\n";
+  arm("check-formfind", both);
+  arm("check-wind", both);
+  arm("check-inflate", place + "echo \"$place: also wrong\"\nexit 2\n");
+  const std::filesystem::path file = folder.path() / "w.yaml";
+  for (const std::string& name : {std::string("w.yaml"), std::string("./w.yaml"), file.string()}) {
+    const Outcome outcome = pneuma({"check", name});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.text, fmt::format("{0}:4:40: warning: strange\n{0}:4:40: wrong\n{0}:4:40: also wrong\n", name));
+  }
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 2);
+  EXPECT_THAT(ran(), IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST_F(RunnerTest, LawThatIsNoneIsToldAtItsPlaceAndNothingIsComputed) {
+  for (const char* kind : {"formfind", "inflate", "wind"}) { // those of the build
+    const auto program = std::filesystem::path(PNEUMA_PROGRAM).parent_path() / fmt::format("pneuma-{}", kind);
+    arm(fmt::format("check-{}", kind), fmt::format("exec {} --check --config \"$config\"\n", program.string()));
+  }
+  change("law: elastic, E: 900 MPa, nu: 0.45", "law: ogden, terms: [{mu: 6 MPa, alpha: 2}, {mu: -1 MPa, alpha: 2}]");
+  const std::string warning = "w.yaml:4:58: warning: material `etfe`: `mu` -1 MPa and `alpha` 2 have different signs";
+  Outcome outcome = pneuma({"check", "w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.text, testing::StartsWith(warning));
+  EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 2) << outcome.text; // and `ok`
+  outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.text, testing::StartsWith(warning));
+
+  std::filesystem::remove_all(folder.path() / "out");
+  change("-1 MPa, alpha: 2", "-1 MPa, alpha: 20");
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"check", "w.yaml"}, {"w.yaml"}}) {
+    outcome = pneuma(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.text, "w.yaml:4:35: material `etfe`: the shear modulus, half the sum of mu alpha, must be "
+                            "positive, not -4 MPa\n");
+    EXPECT_THAT(ran(), IsEmpty());
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+  }
+}
+
+TEST_F(RunnerTest, ProgramThatBreaksInItsCheckIsABug) {
+  for (const auto& [how, words] :
+       {std::pair("kill -SEGV $$", "ended by signal 11"), std::pair("exit 9", "ended by exit code 9")}) {
+    arm("check-wind", how);
+    const Outcome outcome = pneuma({"w.yaml"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_THAT(outcome.text, HasSubstr(fmt::format("pneuma-wind --check {}; please report it\n", words)));
+    EXPECT_THAT(ran(), IsEmpty());
+  }
+}
+
+TEST_F(RunnerTest, CheckLeavesNoFilesBehindWhenInterrupted) {
+  const auto temporary = folder.path() / "tmp";
+  std::filesystem::create_directory(temporary);
+  setenv("TMPDIR", temporary.c_str(), 1);
+  arm("check-wind", "echo $$ >\"$here/started-check\"\nexec sleep 60\n");
+  const pid_t pid = start({"check", "w.yaml"});
+  EXPECT_TRUE(has_started("check"));
+  EXPECT_FALSE(std::filesystem::is_empty(temporary));
+  kill(pid, SIGINT);
+  EXPECT_EQ(end_of(pid).code, 130);
+  EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  std::filesystem::remove(temporary);
+  const Outcome without = pneuma({"check", "w.yaml"});
+  EXPECT_EQ(without.code, 2);
+  EXPECT_THAT(without.text, HasSubstr("let TMPDIR name a folder"));
+  unsetenv("TMPDIR");
 }
 
 TEST_F(RunnerTest, StatusSaysWhatIsStaleAndShowsResults) {

@@ -144,7 +144,7 @@ TEST_F(Materials, UnstableOgdenFoilIsRefusedWithWhereItIsUnstable) {
   inflated("law: ogden, terms: [{mu: 6 MPa, alpha: 2}, {mu: -1 MPa, alpha: 4}]", "1 kPa");
   const Outcome run = pneuma("run w.yaml");
   EXPECT_EQ(run.code, 2) << run.text;
-  EXPECT_THAT(run.text, HasSubstr("w.yaml:2:25: material `foil`: its Ogden constants are unstable"));
+  EXPECT_THAT(run.text, HasSubstr("w.yaml:2:45: material `foil`: its Ogden constants are unstable"));
 }
 
 TEST_F(Materials, FoilsOfEveryOtherLawInflate) {

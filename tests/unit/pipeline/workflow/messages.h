@@ -53,12 +53,12 @@ inline void expect_messages(const std::string& before, const std::string& after,
   const Folder folder;
   for (const auto& [name, content] : others) folder.write(name, content);
   const ReadResult result = read_workflow(folder.write("w.yaml", text));
-  std::string all;
-  for (const Problem& problem : result.problems) all += to_string(problem) + "\n";
-  ASSERT_EQ(result.problems.size(), places.size()) << all;
+  std::string told;
+  for (const Problem& problem : result.problems) told += to_string(problem) + "\n";
+  ASSERT_EQ(result.problems.size(), places.size()) << told;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Problem& problem = result.problems[i];
-    EXPECT_EQ(std::to_string(problem.mark.line) + ":" + std::to_string(problem.mark.column), places[i]) << all;
+    EXPECT_EQ(std::to_string(problem.mark.line) + ":" + std::to_string(problem.mark.column), places[i]) << told;
     EXPECT_THAT(to_string(problem), testing::HasSubstr(messages[i]));
     EXPECT_TRUE(problem.error);
   }

@@ -21,7 +21,8 @@ constexpr double room = 296.15; // K
 Material material_of(workflow::MaterialLaw law) {
   Material material;
   material.name = "foil";
-  material.mark = {"etfe.yaml", 3, 1};
+  material.places[""] = {"etfe.yaml", 3, 1};
+  material.at = room;
   material.law = std::move(law);
   return material;
 }
@@ -43,7 +44,7 @@ Response answer(const solver::material::Law& law, const Vec3& strain) {
 }
 
 workflow::J2Law etfe() {
-  workflow::J2Law law;
+  auto law = pipeline::schema::defaults<workflow::J2Law>();
   law.E = 900e6;
   law.nu = 0.45;
   law.hardening = {{15e6, 72e6}, {21e6, 40e6}};
@@ -125,7 +126,7 @@ TEST(Law, ViscosityMakesItRateDependent) {
 
 TEST(Law, TakesItsValuesAtTheTemperature) {
   Material material = material_of(workflow::ElasticLaw{9e8, 0.45});
-  material.other[room + 20] = workflow::ElasticLaw{7e8, 0.43};
+  material.other.push_back({room + 20, workflow::ElasticLaw{7e8, 0.43}});
   const auto made = std::get<solver::material::StVenantKirchhoff>(made_of(material, room + 5).law);
   EXPECT_DOUBLE_EQ(made.youngs_modulus, 8.5e8);
   EXPECT_DOUBLE_EQ(made.poissons_ratio, 0.445);
@@ -133,7 +134,7 @@ TEST(Law, TakesItsValuesAtTheTemperature) {
 
 TEST(BadLaw, OutsideTheTemperaturesOfItsTableIsToldWithItsPlace) {
   Material material = material_of(workflow::ElasticLaw{9e8, 0.45});
-  material.other[273.15] = workflow::ElasticLaw{1e9, 0.45};
+  material.other.push_back({273.15, workflow::ElasticLaw{1e9, 0.45}});
   EXPECT_EQ(message_of<base::InputError>([&] { made_of(material, room + 7); }),
             "etfe.yaml:3:1: material `foil`: its values are for 0 to 23 degC, not 30 degC");
 }
@@ -163,7 +164,7 @@ TEST(CheckOfLaws, TellsTheFaultsOfAllMaterialsAtAllTemperaturesOnce) {
   law.hardening[1].stress = 15e6;
   Material foil = material_of(law);
   law.nu = 0.6;
-  foil.other[room + 20] = law;
+  foil.other.push_back({room + 20, law});
   Material other = material_of(workflow::MooneyRivlinLaw{-1e6, 0});
   other.name = "other";
   const std::map<std::string, Material> materials = {{"foil", foil}, {"other", other}};
@@ -178,7 +179,7 @@ TEST(CheckOfLaws, JudgesTheLawBetweenTwoTemperatures) {
   law.softening = true;
   Material foil = material_of(law);
   law.hardening = {{21e6, -72e6}, {15e6, 0}};
-  foil.other[room + 20] = law;
+  foil.other.push_back({room + 20, law});
   EXPECT_EQ(told_of({{"foil", foil}}), "nothing was thrown");
   const char* message =
       "etfe.yaml:3:1: material `foil`: at 33 degC, between two temperatures of its table: a branch of modulus 0 MPa "
@@ -193,17 +194,17 @@ TEST(CheckOfLaws, WarnsOfWhatIsNoError) {
   testing::internal::CaptureStderr();
   check_laws({{"foil", material_of(workflow::OgdenLaw{{{6e6, 2}, {-1e6, 2}}})}}, room);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              HasSubstr("etfe.yaml:3:1: material `foil`: `mu` -1 MPa and `alpha` 2 have different signs"));
+              HasSubstr("etfe.yaml:3:1: warning: material `foil`: `mu` -1 MPa and `alpha` 2 have different signs"));
 }
 
 TEST(CheckOfLaws, FitsNoTable) {
-  workflow::TableLaw law;
+  auto law = pipeline::schema::defaults<workflow::TableLaw>();
   law.points = {{0.01, 0.01, 9e6, 9e6, 1}};
   EXPECT_NO_THROW(check_laws({{"foil", material_of(law)}}, room));
 }
 
 TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
-  workflow::TableLaw law;
+  auto law = pipeline::schema::defaults<workflow::TableLaw>();
   law.points = {{0.01, 0.01, 9e6, 9e6, 1}, {0.01, 0.01, 9e6, 9e6, 1}};
   law.range = {-0.01, 0.02};
   EXPECT_THAT(message_of<base::InputError>([&] { made_of(material_of(law)); }),
@@ -211,7 +212,7 @@ TEST(BadLaw, TableThatItsPointsDoNotDetermineIsToldWithItsPlace) {
 }
 
 TEST(Law, TableKnowsWhatItsTestsLeaveOpen) {
-  workflow::TableLaw law;
+  auto law = pipeline::schema::defaults<workflow::TableLaw>();
   for (const double strain : {0.01, 0.02, 0.05}) {
     // E 900 MPa, nu 0.45: S = E (e1 + nu e2) / (1 - nu2)
     for (const double other : {strain, 0.05 * strain}) { // 1:1, and almost 2:1
@@ -229,7 +230,7 @@ TEST(Law, TableKnowsWhatItsTestsLeaveOpen) {
 }
 
 TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
-  workflow::TableLaw table;
+  auto table = pipeline::schema::defaults<workflow::TableLaw>();
   table.fit_to = "model";
   table.range = {-0.05, 0.3};
   Material model = material_of(workflow::MooneyRivlinLaw{25e6, 7e6});
@@ -259,7 +260,7 @@ TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
     library.known.at(material.name).tension_field = false; // uniaxial stress is at its border
     const MaterialLaw made = law_of(library.known, material.name, room);
     EXPECT_TRUE(!made.fit || made.fit->monotone) << material.name;
-    EXPECT_THAT(material.source, HasSubstr(":")) << material.name << ": a mark, then the source";
+    EXPECT_THAT(material.source.value_or(""), HasSubstr(":")) << material.name << ": a mark, then the source";
     EXPECT_EQ(material.density, 1750) << material.name;
     const double stress = uniaxial_stress(made.law, 0.005);
     const auto* j2 = std::get_if<workflow::J2Law>(&material.law);

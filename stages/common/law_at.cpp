@@ -4,9 +4,15 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/workflow/settings.h"
+#include "stages/common/law_at.h"
 
-namespace pneuma::pipeline::workflow {
+namespace pneuma::stages::common {
+
+namespace workflow = pipeline::workflow;
+using workflow::ElasticLaw;
+using workflow::J2Law;
+using workflow::Material;
+using workflow::OrthotropicLaw;
 
 namespace {
 
@@ -39,26 +45,27 @@ L between(const L& a, const L&, double) {
 
 std::optional<std::array<double, 2>> temperatures_of(const Material& material) {
   if (material.other.empty()) return std::nullopt;
-  return std::array{std::min(material.at, material.other.begin()->first),
-                    std::max(material.at, material.other.rbegin()->first)};
+  std::array range = {material.at, material.at};
+  for (const auto& [at, law] : material.other) range = {std::min(range[0], at), std::max(range[1], at)};
+  return range;
 }
 
-MaterialLaw law_at(const Material& material, double temperature) {
+workflow::MaterialLaw law_at(const Material& material, double temperature) {
   const auto range = temperatures_of(material);
   if (!range) return material.law;
   if (!(temperature >= (*range)[0] && temperature <= (*range)[1])) {
     throw std::invalid_argument(fmt::format("{} K is outside the table of `{}`, {} to {} K", temperature, material.name,
                                             (*range)[0], (*range)[1]));
   }
-  std::map<double, MaterialLaw> laws = material.other;
-  laws[material.at] = material.law;
+  std::map<double, workflow::MaterialLaw> laws = {{material.at, material.law}};
+  for (const auto& [at, law] : material.other) laws.emplace(at, law);
   const auto above = laws.lower_bound(temperature);
   if (above->first == temperature) return above->second;
   const auto below = std::prev(above);
   const double t = (temperature - below->first) / (above->first - below->first);
   return std::visit(
-      [&]<class L>(const L& first) -> MaterialLaw { return between(first, std::get<L>(above->second), t); },
+      [&]<class L>(const L& first) -> workflow::MaterialLaw { return between(first, std::get<L>(above->second), t); },
       below->second);
 }
 
-} // namespace pneuma::pipeline::workflow
+} // namespace pneuma::stages::common

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/workflow/settings.h"
+#include "pipeline/test_data/coverage.h"
 
-namespace pneuma::pipeline::workflow {
+namespace pneuma::pipeline::test_data {
 
 namespace {
 
@@ -15,30 +15,29 @@ constexpr double near_uniaxial = 0.1, near_equal = 0.9; // of the stress ratio
 
 } // namespace
 
-std::array<double, 2> least_stress_ratios(const TableLaw& law) {
+std::array<double, 2> least_stress_ratios(std::span<const Point> points, bool has_axes) {
   double largest = 0;
-  for (const TableLaw::Point& point : law.points) {
+  for (const Point& point : points) {
     if (point.weight > 0) largest = std::max({largest, point.stress_1, point.stress_2});
   }
   constexpr double none = std::numeric_limits<double>::infinity();
   std::array ratios = {none, none};
-  for (const TableLaw::Point& point : law.points) {
+  for (const Point& point : points) {
     const auto [smaller, larger] = std::minmax(point.stress_1, point.stress_2);
     if (!(point.weight > 0 && larger > 0 && larger >= largest / 4)) continue;
     const double ratio = smaller / larger;
     if (point.stress_1 >= point.stress_2) ratios[0] = std::min(ratios[0], ratio);
     if (point.stress_2 >= point.stress_1) ratios[1] = std::min(ratios[1], ratio);
   }
-  if (law.kind == TableLaw::Kind::pd_nurbs) ratios.fill(std::min(ratios[0], ratios[1]));
+  if (!has_axes) ratios.fill(std::min(ratios[0], ratios[1]));
   return ratios;
 }
 
-MissingTests missing_tests(const TableLaw& law) {
-  if (!law.fit_to.empty() || law.points.empty()) return {};
-  const std::array ratios = least_stress_ratios(law);
+MissingTests missing_tests(std::span<const Point> points, bool has_axes) {
+  if (points.empty()) return {};
+  const std::array ratios = least_stress_ratios(points, has_axes);
   const double least = std::min(ratios[0], ratios[1]);
   if (!std::isfinite(least)) return {}; // no tension at all: the fit refuses
-  const bool has_axes = law.kind == TableLaw::Kind::le_nurbs;
   const std::string fill = has_axes ? "" : ", or `fit_to` a law that fills what tests leave open";
   if (least > near_equal) {
     return {fmt::format("all tests are near equal stresses, the smaller at least {:.2g} of the larger: they do not say "
@@ -62,4 +61,4 @@ MissingTests missing_tests(const TableLaw& law) {
           false};
 }
 
-} // namespace pneuma::pipeline::workflow
+} // namespace pneuma::pipeline::test_data

@@ -13,7 +13,7 @@
 #include "geometry/base/errors.h"
 #include "pipeline/schema/spelling.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::stages::common {
 
 using Words = std::vector<std::string>;
 
@@ -46,7 +46,8 @@ void read_command_line(std::span<const std::string> words, const std::vector<Swi
       names.push_back(known.name);
     }
     if (found == nullptr) {
-      throw base::InputError(fmt::format("unknown option `{}`{}\n{}", words[i], suggestion(words[i], names), usage));
+      throw base::InputError(
+          fmt::format("unknown option `{}`{}\n{}", words[i], pipeline::schema::suggestion(words[i], names), usage));
     }
     const std::span<const std::string> rest = words.subspan(i + 1);
     if (rest.size() < found->count) {
@@ -59,4 +60,4 @@ void read_command_line(std::span<const std::string> words, const std::vector<Swi
   }
 }
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::stages::common

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/schema/form.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace pneuma::pipeline::schema {
+
+Node list_of(std::vector<Node> items) {
+  Node node;
+  node.kind = NodeKind::list;
+  node.items = std::move(items);
+  return node;
+}
+
+namespace {
+
+// A form of what a function of the reader reads.
+template <class T, class Found, class Write>
+Form<T> scalar_form(Type type, std::optional<Found> (Reader::*read)(const Option&, const Node&, const std::string&),
+                    const Write& write) {
+  return form_of<T>(
+      option_of(type),
+      [read](const Source& source, T& value) {
+        const std::optional<Found> found = (source.reader.*read)(source.option, source.node, source.path);
+        if (found) value = static_cast<T>(*found);
+        return found.has_value();
+      },
+      write);
+}
+
+Node number_node(double value) {
+  return scalar(fmt::format("{}", value));
+}
+
+} // namespace
+
+Form<double> quantity(const std::string& unit) {
+  auto form = scalar_form<double>(Type::quantity, &Reader::number,
+                                  [unit](double value) { return scalar(quantity_text(value, unit)); });
+  form.option.unit = unit;
+  return form;
+}
+
+Form<double> number() {
+  return scalar_form<double>(Type::number, &Reader::number, number_node);
+}
+
+Form<int> integer() {
+  return scalar_form<int>(Type::integer, &Reader::number, [](int value) { return number_node(value); });
+}
+
+Form<bool> flag() {
+  return scalar_form<bool>(Type::flag, &Reader::flag, [](bool value) { return scalar(value ? "on" : "off"); });
+}
+
+Form<std::string> text() {
+  return scalar_form<std::string>(Type::text, &Reader::text, scalar);
+}
+
+Form<std::string> word() {
+  return scalar_form<std::string>(Type::name, &Reader::text, scalar);
+}
+
+Form<std::string> name_of_a(const std::string& kind, const std::vector<std::string>& reserved) {
+  Form<std::string> form = word();
+  form.option.defines = kind;
+  const auto read = [inner = form.access, kind, reserved](const Source& source, std::string& value) {
+    if (!inner->read(source, &value)) {
+      source.reader.cannot_know(kind);
+      return false;
+    }
+    source.reader.define(kind, value, source.node.mark);
+    if (std::find(reserved.begin(), reserved.end(), value) == reserved.end()) return true;
+    source.reader.fail(source.node.mark,
+                       fmt::format("a {} cannot be called `{}`: the word has a meaning of its own", kind, value));
+    return false;
+  };
+  return form_of<std::string>(form.option, read, scalar);
+}
+
+Form<std::string> reference_to(const std::string& kind, const std::string& other) {
+  const auto read = [inner = word().access, kind, other](const Source& source, std::string& value) {
+    if (!inner->read(source, &value)) return false;
+    if (other.empty() || value != other) source.reader.refer(kind, value, source.node.mark);
+    return true;
+  };
+  return form_of<std::string>(option_of(Type::name), read, scalar);
+}
+
+} // namespace pneuma::pipeline::schema

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "geometry/base/types.h"
+#include "pipeline/schema/quantity.h"
+#include "pipeline/schema/reader.h"
+
+namespace pneuma::pipeline::schema {
+
+// What is read: a node at its path, as an option describes it.
+struct Source {
+  Reader& reader;
+  const Option& option;
+  const Node& node;
+  const std::string& path;
+};
+
+// How values of one type, which only its Form knows, are read and written.
+struct Access {
+  std::function<bool(const Source&, void* value)> read;        // false: a problem was reported
+  std::function<std::optional<Node>(const void* value)> write; // none: it is absent
+};
+
+// What may stand for a T: its description, how it is read and checked, and how it is written so that it reads back to
+// the same bits. Declarations read as sentences: quantity("m").positive().otherwise("0.5 m").
+template <class T>
+struct Form {
+  Option option;
+  std::shared_ptr<const Access> access;
+
+  bool read(Reader& reader, const Node& node, const std::string& path, T& value) const {
+    return access->read({reader, option, node, path}, &value);
+  }
+  Node write(const T& value) const { return access->write(&value).value(); }
+
+  Form otherwise(const std::string& yaml) const { // the default
+    return changed([&](Option& o) { set_default(o, yaml); });
+  }
+  Form within(const Range& range) const {
+    return changed([&](Option& o) { o.limits = range; });
+  }
+  Form positive() const { return within({0, std::numeric_limits<double>::infinity(), "positive", false, true}); }
+  Form at_least(double min, const std::string& words) const {
+    return within({min, std::numeric_limits<double>::infinity(), words});
+  }
+  Form between(double min, double max, const std::string& words) const { return within({min, max, words}); }
+  Form usual(double min, double max, const std::string& words) const { // outside is a warning
+    return changed([&](Option& o) { o.usually = Range{min, max, words}; });
+  }
+  Form such_as(const std::string& example) const {
+    return changed([&](Option& o) { o.example = example; });
+  }
+  Form items(std::size_t least, std::size_t most) const {
+    return changed([&](Option& o) { o.min_items = least, o.max_items = most; });
+  }
+  Form named(const std::string& name, const std::string& text) const {
+    return changed([&](Option& o) { o.name = name, o.text = text; });
+  }
+  // `fault` says what is wrong with a value by itself: a sentence, or "must ..." about its key; empty: nothing.
+  Form judged(std::function<std::string(const T&)> fault) const {
+    const auto read = [access = access, fault](const Source& source, void* value) {
+      if (!access->read(source, value)) return false;
+      const std::string wrong = fault(*static_cast<const T*>(value));
+      if (!wrong.empty()) source.reader.fail_value(source.node.mark, source.path, wrong);
+      return wrong.empty();
+    };
+    return {option, std::make_shared<Access>(Access{read, access->write})};
+  }
+
+private:
+  template <class Change>
+  Form changed(const Change& change) const {
+    Form copy = *this;
+    change(copy.option);
+    return copy;
+  }
+};
+
+// `read(source, value)` fills a T, `write(value)` gives its node, or none where it is absent.
+template <class T, class Read, class Write>
+Form<T> form_of(Option option, const Read& read, const Write& write) {
+  return {std::move(option),
+          std::make_shared<Access>(Access{
+              [read](const Source& source, void* value) { return read(source, *static_cast<T*>(value)); },
+              [write](const void* value) { return std::optional<Node>(write(*static_cast<const T*>(value))); }})};
+}
+
+Form<double> quantity(const std::string& unit);
+Form<double> number();
+Form<int> integer();
+Form<bool> flag();
+Form<std::string> text();
+Form<std::string> word(); // letters, digits, _ and -
+// The name that something of a kind ("foil") gets; and one that there must be, or a word that stands for none of them.
+Form<std::string> name_of_a(const std::string& kind, const std::vector<std::string>& reserved = {});
+Form<std::string> reference_to(const std::string& kind, const std::string& other = "");
+
+Node list_of(std::vector<Node> items);
+
+// The same value as another type.
+template <class U, class T, class To, class From>
+Form<U> mapped(const Form<T>& form, const To& to, const From& from) {
+  return form_of<U>(
+      form.option,
+      [access = form.access, to](const Source& source, U& value) {
+        T one{};
+        if (!access->read(source, &one)) return false;
+        value = to(one);
+        return true;
+      },
+      [access = form.access, from](const U& value) {
+        const T one = from(value);
+        return access->write(&one);
+      });
+}
+
+// A value that may be absent.
+template <class T>
+Form<std::optional<T>> maybe(const Form<T>& form) {
+  const auto read = mapped<std::optional<T>>(
+      form, [](const T& value) { return std::optional<T>(value); }, [](const auto& value) { return *value; });
+  return form_of<std::optional<T>>(
+      form.option,
+      [access = read.access](const Source& source, std::optional<T>& value) { return access->read(source, &value); },
+      [access = form.access](const std::optional<T>& value) { return value ? access->write(&*value) : std::nullopt; });
+}
+
+template <class T>
+struct Word {
+  std::string name;
+  std::optional<T> value; // none: not available yet
+  std::string text;       // what it means, or what is available instead
+};
+
+// One of a few words.
+template <class T>
+Form<T> choice(const std::vector<Word<T>>& words) {
+  std::vector<Option> members;
+  for (const Word<T>& one : words) {
+    Option allowed;
+    allowed.name = one.name;
+    (one.value ? allowed.text : allowed.not_yet) = one.text;
+    members.push_back(std::move(allowed));
+  }
+  return form_of<T>(
+      option_of(Type::choice, std::move(members)),
+      [words](const Source& source, T& value) {
+        const std::optional<std::size_t> found = source.reader.choice(source.option, source.node, source.path);
+        if (found) value = *words[*found].value;
+        return found.has_value();
+      },
+      [words](const T& value) {
+        const auto found =
+            std::find_if(words.begin(), words.end(), [&](const Word<T>& one) { return one.value == value; });
+        return scalar(found->name);
+      });
+}
+
+template <class T>
+Form<std::vector<T>> list(const Form<T>& item) {
+  return form_of<std::vector<T>>(
+      option_of(Type::list, {item.option}),
+      [item](const Source& source, std::vector<T>& value) {
+        bool complete = source.reader.items(source.option, source.node, source.path);
+        value.clear();
+        for (std::size_t i = 0; i < source.node.items.size(); ++i) {
+          T& one = value.emplace_back();
+          const std::string path = below(source.path, std::to_string(i));
+          complete = item.read(source.reader, source.node.items[i], path, one) && complete;
+        }
+        return complete;
+      },
+      [item](const std::vector<T>& value) {
+        std::vector<Node> items;
+        for (const T& one : value) items.push_back(item.write(one));
+        return list_of(std::move(items));
+      });
+}
+
+// A list of so many.
+template <std::size_t N, class T>
+Form<std::array<T, N>> tuple(const Form<T>& item) {
+  return mapped<std::array<T, N>>(
+      list(item).items(N, N),
+      [](const std::vector<T>& values) {
+        std::array<T, N> out{};
+        std::copy(values.begin(), values.end(), out.begin());
+        return out;
+      },
+      [](const std::array<T, N>& values) { return std::vector<T>(values.begin(), values.end()); });
+}
+
+// Components, each of this form.
+template <class V>
+Form<V> vector(const Form<double>& component) {
+  constexpr auto size = static_cast<std::size_t>(V::RowsAtCompileTime);
+  return mapped<V>(
+      tuple<size>(component), [](const std::array<double, size>& values) { return V(values.data()); },
+      [](const V& value) {
+        std::array<double, size> out{};
+        std::copy(value.data(), value.data() + size, out.begin());
+        return out;
+      });
+}
+
+// A map from names; of a kind that there must be ("foil"), or a word that stands for all of them.
+template <class T>
+Form<std::map<std::string, T>> table(const Form<T>& item, const std::string& kind = "", const std::string& other = "") {
+  return form_of<std::map<std::string, T>>(
+      option_of(Type::table, {item.option}),
+      [item, kind, other](const Source& source, std::map<std::string, T>& value) {
+        bool complete = source.reader.entries(source.option, source.node, source.path);
+        for (const Entry& entry : source.node.entries) {
+          if (!kind.empty() && entry.key != other) source.reader.refer(kind, entry.key, entry.mark);
+          T one{};
+          const bool good = item.read(source.reader, entry.value, below(source.path, entry.key), one);
+          if (good) value.insert_or_assign(entry.key, std::move(one));
+          complete = good && complete;
+        }
+        return complete;
+      },
+      [item](const std::map<std::string, T>& value) {
+        Node node;
+        node.kind = NodeKind::map;
+        for (const auto& [name, one] : value) add(node, name, item.write(one));
+        return node;
+      });
+}
+
+// The one of several forms that fits what is written; `which` says as which of them a value is written.
+template <class T>
+Form<T> either(const std::vector<Form<T>>& kinds, const std::function<std::size_t(const T&)>& which) {
+  std::vector<Option> members;
+  for (const Form<T>& kind : kinds) members.push_back(kind.option);
+  return form_of<T>(
+      option_of(Type::either, std::move(members)),
+      [kinds](const Source& source, T& value) {
+        const std::optional<std::size_t> found = source.reader.either(source.option, source.node, source.path);
+        return found && kinds[*found].read(source.reader, source.node, source.path, value);
+      },
+      [kinds, which](const T& value) { return kinds[which(value)].write(value); });
+}
+
+// A word that stands for no value, or one.
+template <class T>
+Form<std::optional<T>> word_or(const std::string& word, const std::string& text, const Form<T>& form) {
+  using Maybe = std::optional<T>;
+  const Form<Maybe> none = mapped<Maybe>(
+      choice<bool>({{word, true, text}}), [](bool) { return Maybe(); }, [](const Maybe&) { return true; });
+  return either<Maybe>({none, maybe(form)}, [](const Maybe& value) { return value ? 1 : 0; });
+}
+
+// An alternative of a std::variant.
+template <class Variant, class T>
+Form<Variant> as(const Form<T>& form) {
+  return mapped<Variant>(
+      form, [](const T& value) { return Variant(value); }, [](const Variant& value) { return std::get<T>(value); });
+}
+
+} // namespace pneuma::pipeline::schema

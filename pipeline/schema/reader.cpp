@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/schema/reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "pipeline/schema/quantity.h"
+#include "pipeline/schema/spelling.h"
+
+namespace pneuma::pipeline::schema {
+
+namespace {
+
+constexpr std::size_t longest_name = 64; // stages and foils name folders and files
+
+// The path around; empty: the file itself.
+std::string around(const std::string& path) {
+  const auto dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+std::string written_as(const Node& node) {
+  switch (node.kind) {
+  case NodeKind::null:
+    return "nothing";
+  case NodeKind::scalar:
+    return "`" + node.text + "`";
+  case NodeKind::list:
+    return "a list";
+  case NodeKind::map:
+    return "a map";
+  }
+  return {};
+}
+
+} // namespace
+
+std::string quoted(const std::string& key) {
+  return fmt::format("`{}`", key);
+}
+
+void Reader::fail_value(const Mark& mark, const std::string& path, const std::string& fault) {
+  fail(mark, fault.starts_with("must ") ? fmt::format("{} {}", title(path), fault) : fault);
+}
+
+void Reader::refuse(const std::string& path, const std::string& why) {
+  fail_key(path, fmt::format("{} {}; leave it out", title(path), why));
+}
+
+const Node& Reader::keep(Node tree) {
+  trees_.push_back(std::move(tree));
+  places_.try_emplace("", Place{&trees_.back(), nullptr, {}});
+  return trees_.back();
+}
+
+void Reader::note(const std::string& path, const Node& node, const Mark* key, std::optional<std::size_t> position) {
+  if (!reads_default_) places_.insert_or_assign(path, Place{&node, key, position});
+}
+
+const Reader::Place* Reader::nearest_place(std::string path) const {
+  for (;; path = around(path)) {
+    if (const auto found = places_.find(path); found != places_.end()) return &found->second;
+    if (path.empty()) return nullptr;
+  }
+}
+
+Mark Reader::mark(const std::string& path) const {
+  const Place* place = nearest_place(path);
+  return place != nullptr ? place->node->mark : Mark{};
+}
+
+Mark Reader::key_mark(const std::string& path) const {
+  const auto found = places_.find(path);
+  return found != places_.end() && found->second.key != nullptr ? *found->second.key : mark(path);
+}
+
+std::string Reader::written(const std::string& path) const {
+  const auto found = places_.find(path);
+  return found != places_.end() ? found->second.node->text : "";
+}
+
+std::string Reader::title(const std::string& path) const {
+  if (path.empty()) return "the file";
+  const auto found = places_.find(path);
+  if (found != places_.end() && found->second.position) {
+    return fmt::format("entry {} of {}", *found->second.position + 1, title(around(path)));
+  }
+  return fmt::format("`{}`", std::string_view(path).substr(path.rfind('.') + 1));
+}
+
+std::optional<Mark> Reader::origin(const std::string& path) const {
+  for (std::string at = path;; at = around(at)) {
+    if (const auto found = marks_.find(at); found != marks_.end()) return found->second;
+    if (const auto found = sources_.find(at); found != sources_.end()) {
+      return origin(found->second + path.substr(at.size()));
+    }
+    if (const auto found = places_.find(at); found != places_.end()) {
+      const bool is_value = found->second.node->kind == NodeKind::scalar;
+      return is_value ? std::optional<Mark>(found->second.node->mark) : std::nullopt;
+    }
+    if (at.empty()) return std::nullopt;
+  }
+}
+
+void Reader::define(const std::string& kind, const std::string& name, const Mark& mark) {
+  Names& names = names_[kind];
+  const auto [first, is_new] = names.first.emplace(name, mark);
+  if (is_new) return names.known.push_back(name);
+  fail(mark, fmt::format("a second {0} `{1}`: every {0} needs a name of its own", kind, name));
+}
+
+void Reader::refer(const std::string& kind, const std::string& name, const Mark& mark) {
+  uses_.push_back({kind, name, mark});
+}
+
+bool Reader::knows(const std::string& kind) const {
+  const auto found = names_.find(kind);
+  return found == names_.end() || found->second.is_complete;
+}
+
+const std::vector<std::string>& Reader::names(const std::string& kind) const {
+  static const std::vector<std::string> none;
+  const auto found = names_.find(kind);
+  return found != names_.end() ? found->second.known : none;
+}
+
+std::string Reader::no_such(const std::string& kind, const std::string& name) const {
+  return fmt::format("there is no {0} `{1}`{2}; {0}s: {3}", kind, name, suggestion(name, names(kind)),
+                     joined(names(kind)));
+}
+
+void Reader::check_references() {
+  for (const auto& [kind, name, mark] : uses_) {
+    const auto found = names_.find(kind);
+    if (found != names_.end() && (found->second.first.contains(name) || !found->second.is_complete)) continue;
+    fail(mark, no_such(kind, name));
+  }
+  uses_.clear();
+}
+
+bool Reader::not_yet(const Mark& mark, const std::string& what, const std::string& instead) {
+  fail(mark, fmt::format("{} is not available yet; {}", what, instead));
+  return false;
+}
+
+bool Reader::fits(const Option& option, const Node& node, const std::string& path) {
+  if (node.kind == kind_of(option)) return true;
+  fail(node.mark, fmt::format("{} must be {}, not {}", title(path), expected(option), written_as(node)));
+  return false;
+}
+
+bool Reader::name(const std::string& name, const Mark& mark) {
+  const bool fine = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return (std::isalnum(c) != 0 && c < 128) || c == '_' || c == '-';
+  });
+  if (!fine) fail(mark, fmt::format("`{}` is no name: letters, digits, _ and - are allowed", name));
+  const bool is_long = fine && name.size() > longest_name;
+  if (is_long) {
+    fail(mark, fmt::format("the name `{}...` has {} letters; at most {} are allowed", name.substr(0, 20), name.size(),
+                           longest_name));
+  }
+  return fine && !is_long;
+}
+
+std::optional<std::string> Reader::text(const Option& option, const Node& node, const std::string& path) {
+  if (!fits(option, node, path) || (option.type == Type::name && !name(node.text, node.mark))) return std::nullopt;
+  return node.text;
+}
+
+std::optional<bool> Reader::flag(const Option& option, const Node& node, const std::string& path) {
+  if (!fits(option, node, path)) return std::nullopt;
+  for (const char* word : {"on", "true", "yes"}) {
+    if (node.text == word) return true;
+  }
+  for (const char* word : {"off", "false", "no"}) {
+    if (node.text == word) return false;
+  }
+  fail(node.mark, fmt::format("{} must be on or off, not `{}`", title(path), node.text));
+  return std::nullopt;
+}
+
+std::optional<double> Reader::number(const Option& option, const Node& node, const std::string& path) {
+  if (!fits(option, node, path)) return std::nullopt;
+  double value = 0;
+  if (option.type == Type::quantity) {
+    const Quantity read = parse_quantity(node.text, option.unit, option.example);
+    if (!read.error.empty()) return fail(node.mark, fmt::format("{}: {}", title(path), read.error)), std::nullopt;
+    value = read.value;
+  } else {
+    const std::optional<double> plain = parse_number(node.text);
+    int whole = 0;
+    const char* end = node.text.data() + node.text.size();
+    const bool is_whole = std::from_chars(node.text.data(), end, whole).ptr == end;
+    if (!plain || (option.type == Type::integer && !is_whole)) {
+      fail(node.mark, fmt::format("{} must be {}, not `{}`", title(path), expected(option), node.text));
+      return std::nullopt;
+    }
+    value = *plain;
+  }
+  if (option.limits && !option.limits->holds(value)) {
+    fail(node.mark, fmt::format("{} must be {}, not {}", title(path), option.limits->words, node.text));
+    return std::nullopt;
+  }
+  if (option.usually && !option.usually->holds(value)) {
+    const std::string taken = option.type == Type::quantity ? shown(value, option.unit) : node.text;
+    warn(path, fmt::format("{} {} is unusual ({}){}; is it meant?", title(path), node.text, option.usually->words,
+                           taken == node.text ? "" : ", taken as " + taken));
+  }
+  return value;
+}
+
+std::optional<std::size_t> Reader::choice(const Option& option, const Node& node, const std::string& path) {
+  if (!fits(option, node, path)) return std::nullopt;
+  for (std::size_t i = 0; i < option.members().size(); ++i) {
+    const Option& allowed = option.members()[i];
+    if (allowed.name != node.text) continue;
+    if (allowed.not_yet.empty()) return i;
+    not_yet(node.mark, fmt::format("{}: `{}`", title(path), node.text), allowed.not_yet);
+    return std::nullopt;
+  }
+  fail(node.mark,
+       fmt::format("{} must be one of: {}, not `{}`{}", title(path), joined(available_names(option.members())),
+                   node.text, suggestion(node.text, names_of(option.members()))));
+  return std::nullopt;
+}
+
+bool Reader::items(const Option& list, const Node& node, const std::string& path) {
+  if (!fits(list, node, path)) return false;
+  const std::size_t count = node.items.size();
+  for (std::size_t i = 0; i < count; ++i) note(below(path, std::to_string(i)), node.items[i], nullptr, i);
+  if (count >= list.min_items && count <= list.max_items) return true;
+  const bool few = count < list.min_items;
+  const char* bound = list.min_items == list.max_items ? "" : few ? "at least " : "at most ";
+  fail(node.mark, fmt::format("{} must have {}{} entries, not {}", title(path), bound,
+                              few ? list.min_items : list.max_items, count));
+  return false;
+}
+
+bool Reader::entries(const Option& table, const Node& node, const std::string& path) {
+  if (!fits(table, node, path)) return false;
+  bool complete = node.entries.size() >= table.min_items;
+  if (!complete) fail(node.mark, fmt::format("{} is empty; it needs {}", title(path), expected(table)));
+  for (const Entry& entry : node.entries) {
+    note(below(path, entry.key), entry.value, &entry.mark);
+    complete = name(entry.key, entry.mark) && complete;
+  }
+  return complete;
+}
+
+// Of two kinds of scalars a choice comes first: what begins like a number is left to the other.
+std::optional<std::size_t> Reader::either(const Option& option, const Node& node, const std::string& path) {
+  const auto scalars = std::count_if(option.members().begin(), option.members().end(),
+                                     [](const Option& kind) { return kind_of(kind) == NodeKind::scalar; });
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < option.members().size(); ++i) {
+    const Option& kind = option.members()[i];
+    if (kind_of(kind) != node.kind) continue;
+    if (!kind.not_yet.empty()) {
+      not_yet(node.mark, fmt::format("{} as {}", title(path), written_as(node)), kind.not_yet);
+      return std::nullopt;
+    }
+    if (kind.type == Type::choice) {
+      words = names_of(kind.members());
+      if (std::find(words.begin(), words.end(), node.text) == words.end()) {
+        if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
+        break;
+      }
+    }
+    return i;
+  }
+  fail(node.mark, fmt::format("{} must be {}, not {}{}", title(path), expected(option), written_as(node),
+                              suggestion(node.text, words)));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> Reader::alternative(const Option& option, const Node& node, const std::string& path) {
+  if (!fits(option, node, path)) return std::nullopt;
+  const std::string allowed = joined(available_names(option.members()));
+  const Node* tag = find(node, option.tag);
+  if (tag == nullptr && option.default_value.empty()) {
+    fail(node.mark, fmt::format("{} lacks the key `{}`: one of {}", title(path), option.tag, allowed));
+    return std::nullopt;
+  }
+  if (tag != nullptr && tag->kind != NodeKind::scalar) {
+    fail(tag->mark, fmt::format("`{}` must be one of: {}, not {}", option.tag, allowed, written_as(*tag)));
+    return std::nullopt;
+  }
+  const std::string& word = tag != nullptr ? tag->text : option.default_value;
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < option.members().size(); ++i) {
+    const Option& group = option.members()[i];
+    if (group.name != word || (found && find(node, group.told_by) == nullptr)) continue;
+    found = i;
+  }
+  if (!found) {
+    fail(tag->mark, fmt::format("`{}` must be one of: {}, not `{}`{}", option.tag, allowed, word,
+                                suggestion(word, names_of(option.members()))));
+  } else if (const std::string& instead = option.members()[*found].not_yet; !instead.empty()) {
+    not_yet(tag->mark, fmt::format("`{}: {}`", option.tag, word), instead);
+    return std::nullopt;
+  }
+  return found;
+}
+
+void Reader::unknown_key(const Option& group, const Entry& entry, const std::string& path, const Option* variant) {
+  std::vector<std::string> known = available_names(group.members());
+  if (variant != nullptr) known.insert(known.begin(), variant->tag);
+  std::string message = fmt::format("unknown key `{}` in {}{}; known: {}", entry.key, title(path),
+                                    suggestion(entry.key, known), joined(known));
+  for (const Option& other : variant != nullptr ? variant->members() : std::vector<Option>{}) {
+    const std::vector<std::string> names = names_of(other.members());
+    if (std::find(names.begin(), names.end(), entry.key) == names.end()) continue;
+    message += fmt::format("; it belongs to `{}: {}`{}", variant->tag, other.name,
+                           other.told_by.empty() ? "" : fmt::format(" with `{}`", other.told_by));
+    break;
+  }
+  fail(entry.mark, message);
+}
+
+void Reader::report_missing(const Option& group, const Node& node, const std::string& path, bool& complete) {
+  for (const Option& member : group.members()) {
+    if (!member.is_required || find(node, member.name) != nullptr || (member.is_internal && !is_stage_file_)) continue;
+    fail(node.mark,
+         fmt::format("{} lacks the key `{}`: {} ({})", title(path), member.name, member.text, expected(member)));
+    if (!member.defines.empty()) cannot_know(member.defines);
+    complete = false;
+  }
+  for (const KeySet& set : group.alternatives) {
+    const auto is_present = [&](const std::string& key) { return find(node, key) != nullptr; };
+    const auto present = static_cast<std::size_t>(std::count_if(set.keys.begin(), set.keys.end(), is_present));
+    if (present >= set.least && present <= set.most) continue;
+    fail(node.mark, fmt::format("{} needs {}; it has {}", title(path), wanted(set),
+                                present == 0 ? "none" : fmt::format("{}", present)));
+    complete = false;
+  }
+}
+
+bool Reader::keys(const Option& group, const Node& node, const std::string& path, const Option* variant) {
+  if (!fits(group, node, path)) return false;
+  bool complete = true, has_unavailable = false;
+  for (const Entry& entry : node.entries) {
+    note(below(path, entry.key), entry.value, &entry.mark);
+    if (variant != nullptr && entry.key == variant->tag) continue;
+    const auto member = std::find_if(group.members().begin(), group.members().end(),
+                                     [&](const Option& o) { return o.name == entry.key; });
+    if (member == group.members().end() || (member->is_internal && !is_stage_file_)) {
+      unknown_key(group, entry, path, variant);
+      complete = false;
+    } else if (!member->not_yet.empty()) {
+      complete = not_yet(entry.mark, fmt::format("`{}`", entry.key), member->not_yet);
+      has_unavailable = true;
+    }
+  }
+  // a group that asks for something unavailable is not also told what else it lacks
+  if (!has_unavailable) report_missing(group, node, path, complete);
+  return complete;
+}
+
+} // namespace pneuma::pipeline::schema

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pipeline/schema/spelling.h"
+#include "pipeline/workflow/settings.h"
+
+namespace pneuma::pipeline::workflow {
+
+void Site::check(Reader& reader, const At<Site>& site) {
+  const double ambient = site->ambient_pressure.pascal;
+  if (ambient == 0 || (ambient >= 5e4 && ambient <= 1.1e5)) return;
+  const auto key = site[&Site::ambient_pressure];
+  reader.warn(key.path, fmt::format("{} {} Pa is unusual: 101325 Pa at sea level, 70 kPa at 3000 m, 0 Pa for the "
+                                    "thesis' gas law; is it meant?",
+                                    schema::name(&Site::ambient_pressure), ambient));
+}
+
+const std::string& Cushion::air_of(const std::string& chamber) const {
+  const auto found =
+      std::find_if(chambers.begin(), chambers.end(), [&](const ChamberSettings& one) { return one.name == chamber; });
+  return found == chambers.end() || !found->connected_to ? chamber : *found->connected_to;
+}
+
+namespace {
+
+void check_edges(Reader& reader, const At<Cushion>& cushion) {
+  const std::vector<std::string> known = geometry::edge_names(cushion->plan);
+  const auto edges = cushion[&Cushion::edges];
+  for (const auto& [edge, held] : edges.value) {
+    if (edge == all || std::find(known.begin(), known.end(), edge) != known.end()) continue;
+    reader.fail_key(edges.at(held, edge).path, fmt::format("the plan has no edge `{}`{}; its edges: {}", edge,
+                                                           schema::suggestion(edge, known), schema::joined(known)));
+  }
+}
+
+// Position of a wall from the weather side inwards; the base comes after the last foil. None: there is no such foil.
+std::optional<std::size_t> position_of(const std::string& wall, const Cushion& cushion) {
+  const std::vector<FoilSettings>& foils = cushion.foils;
+  const auto found =
+      std::find_if(foils.begin(), foils.end(), [&](const FoilSettings& foil) { return foil.name == wall; });
+  if (found == foils.end() && wall != "base") return std::nullopt;
+  return static_cast<std::size_t>(found - foils.begin());
+}
+
+void check_walls(Reader& reader, const At<Cushion>& cushion) {
+  std::map<std::size_t, std::string> gaps; // between foils -> chamber
+  for (const At<ChamberSettings>& chamber : items(cushion[&Cushion::chambers])) {
+    const auto between = chamber[&ChamberSettings::between];
+    const auto& [one, other] = between.value;
+    const auto a = position_of(one, cushion.value), b = position_of(other, cushion.value);
+    if (!a || !b) continue;
+    const auto [first, second] = std::minmax(*a, *b);
+    if (second == cushion->foils.size() && !cushion->rigid_base) {
+      const auto wall = between.at(one, one == "base" ? "0" : "1");
+      reader.fail(wall.path, "the cushion has no base; say `base: rigid` in `cushion`, or name two foils");
+    } else if (second - first != 1) {
+      reader.fail(between.path,
+                  fmt::format("`{}` and `{}` are no neighbours; from the weather side inwards: {}{}", one, other,
+                              schema::joined(reader.names("foil")), cushion->rigid_base ? ", base" : ""));
+    } else if (const auto [gap, is_new] = gaps.emplace(first, chamber->name); !is_new) {
+      reader.fail(between.path, fmt::format("between these foils lies the chamber `{}` already", gap->second));
+    }
+  }
+}
+
+void check_connections(Reader& reader, const At<Cushion>& cushion) {
+  for (const At<ChamberSettings>& chamber : items(cushion[&Cushion::chambers])) {
+    if (!chamber->connected_to) continue;
+    const std::string &own = chamber->name, &other = *chamber->connected_to;
+    const std::string next = cushion->air_of(other), path = chamber[&ChamberSettings::connected_to].path;
+    if (other == own) {
+      reader.fail(path, fmt::format("`{}` cannot be connected to itself", own));
+    } else if (next == own) {
+      reader.fail(path, fmt::format("`{}` is connected to `{}` in turn; say it at one of the two", other, own));
+    } else if (next != other) {
+      reader.fail(path, fmt::format("`{0}` is itself connected to `{1}`; connect both to `{1}`", other, next));
+    }
+  }
+}
+
+} // namespace
+
+void Cushion::check(Reader& reader, const At<Cushion>& cushion) {
+  check_edges(reader, cushion);
+  check_walls(reader, cushion);
+  check_connections(reader, cushion);
+}
+
+} // namespace pneuma::pipeline::workflow
+
+namespace pneuma::pipeline::schema {
+
+using workflow::length;
+using workflow::points;
+
+namespace {
+
+std::string ring_fault(const std::vector<base::Vec2>& corners) {
+  return geometry::plan_fault(geometry::Polygon{corners});
+}
+
+} // namespace
+
+void Declaration<geometry::Rectangle>::declare(Keys<geometry::Rectangle>& keys) {
+  keys("length", &geometry::Rectangle::length, length(), "along x");
+  keys("width", &geometry::Rectangle::width, length(), "along y");
+  keys.is("rectangle", "edges south, east, north, west");
+}
+
+void Declaration<geometry::Circle>::declare(Keys<geometry::Circle>& keys) {
+  keys("radius", &geometry::Circle::radius, length(), "of the rim");
+  keys.is("circle", "edge rim");
+}
+
+void Declaration<geometry::Triangle>::declare(Keys<geometry::Triangle>& keys) {
+  using geometry::Triangle;
+  keys.computed(
+      "side", length(), [](Triangle& plan, double side) { plan = geometry::equilateral(side); },
+      [](const Triangle&) { return std::optional<double>(); }, "of an equilateral triangle");
+  keys.computed(
+      "points", points(3).items(3, 3).judged(ring_fault),
+      [](Triangle& plan, const std::vector<base::Vec2>& p) { std::copy(p.begin(), p.end(), plan.points); },
+      [](const Triangle& plan) {
+        return std::optional(std::vector<base::Vec2>(std::begin(plan.points), std::end(plan.points)));
+      },
+      "the three corners");
+  keys.is("triangle", "edges e1, e2, e3");
+  keys.exactly_one({"side", "points"});
+  keys.rule([](Reader& reader, const At<Triangle>& plan) {
+    if (reader.given(below(plan.path, "side"))) {
+      reader.came_from(below(plan.path, "points"), below(plan.path, "side"));
+    }
+  });
+}
+
+void Declaration<geometry::Polygon>::declare(Keys<geometry::Polygon>& keys) {
+  keys("points", &geometry::Polygon::points, points(3).judged(ring_fault), "corners in order, either way round");
+  keys.is("polygon", "edges e1 (from the first point to the second), e2, ...; re-entrant corners are allowed");
+}
+
+} // namespace pneuma::pipeline::schema

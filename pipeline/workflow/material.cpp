@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pipeline/workflow/settings.h"
+
+namespace pneuma::pipeline::workflow {
+
+namespace {
+
+using schema::Keys;
+
+// Between two temperatures branch changes into branch.
+void check_branches(Reader& reader, const At<Material>& material) {
+  const auto* own = std::get_if<J2Law>(&material->law);
+  for (std::size_t i = 0; own != nullptr && i < material->other.size(); ++i) {
+    const std::string entry = schema::below(material.path, fmt::format("temperature.{}", i));
+    const auto hardening = At<J2Law>{std::get<J2Law>(material->other[i].law), entry}[&J2Law::hardening];
+    if (hardening->size() == own->hardening.size()) continue;
+    reader.fail(hardening.path, fmt::format("{} must have {} branches as the law itself, not {}: between two "
+                                            "temperatures branch changes into branch",
+                                            schema::name(&J2Law::hardening), own->hardening.size(), hardening->size()));
+  }
+}
+
+// The law at another temperature: what changes with it; what it leaves out is as in the law itself.
+template <class L>
+void add_temperatures(Keys<Material>& keys) {
+  using Entry = Material::AtTemperature;
+  Keys<Entry> entry;
+  entry("at", &Entry::at, quantity("K").positive(), "the temperature");
+  schema::AnyKeys varying;
+  for (const schema::Key& key : schema::keys_of<L>().list) {
+    if (key.with_temperature) varying.list.emplace_back(key).option.is_required = false;
+  }
+  entry.include(varying, [](void* one) -> void* { return &std::get<L>(static_cast<Entry*>(one)->law); });
+  const Form<Entry> item =
+      group(entry).named("temperature", "what the law has there; the rest is as in the law itself");
+  const auto read = [item](const schema::Source& source, Material& material) {
+    const auto& [reader, option, node, path] = source;
+    bool complete = reader.items(option, node, path);
+    for (std::size_t i = 0; complete && i < node.items.size(); ++i) {
+      const std::string place = schema::below(path, std::to_string(i));
+      Entry one{0, material.law};
+      complete = item.read(reader, node.items[i], place, one);
+      const bool is_second =
+          one.at == material.at || std::any_of(material.other.begin(), material.other.end(),
+                                               [&](const Entry& other) { return other.at == one.at; });
+      material.other.push_back(one);
+      if (!complete || !is_second) continue;
+      reader.fail(schema::below(place, "at"),
+                  fmt::format("a second law at {:.6g} degC; `at` of the law itself is {:.6g} degC",
+                              schema::celsius(one.at), schema::celsius(material.at)));
+      return false;
+    }
+    return complete;
+  };
+  const auto all = list(item).items(1, 1000).named(
+      "temperature", "the law at other temperatures; linear between neighbours, an error outside");
+  const auto write = [all](const Material& material) {
+    return material.other.empty() ? std::optional<schema::Node>() : all.write(material.other);
+  };
+  const Form<Material> form = schema::form_of<Material>(all.option, read, write);
+  keys.list.push_back({form.option, form.access, [](void* owner) { return owner; }, false, {}, "", false});
+}
+
+// The keys of one law in a material.
+template <class L>
+schema::Alternative material_of(const Keys<L>& law, bool has_temperatures = false) {
+  Keys<Material> keys;
+  keys.include(law, [](void* value) -> void* { return &std::get<L>(static_cast<Material*>(value)->law); });
+  if (has_temperatures) {
+    keys("at", &Material::at, quantity("K").positive().otherwise("23 degC"),
+         "temperature at which the law's own values hold")
+        .where([](const Material& material) { return !material.other.empty(); }, "");
+    add_temperatures<L>(keys);
+  }
+  keys.include(schema::keys_of<Material>(), [](void* value) { return value; });
+  keys.rule(check_branches);
+  const schema::Option named = law.option();
+  keys.is(named.name, named.text, named.told_by);
+  return {std::move(keys), [](void* value) { static_cast<Material*>(value)->law = L{}; },
+          [](const void* value) { return std::holds_alternative<L>(static_cast<const Material*>(value)->law); }};
+}
+
+} // namespace
+
+Form<Material> material() {
+  using schema::keys_of;
+  std::vector<schema::Alternative> laws = {
+      material_of(keys_of<ElasticLaw>(), true), material_of(keys_of<OrthotropicLaw>(), true),
+      material_of(keys_of<J2Law>(), true), material_of(keys_of<OgdenLaw>()), material_of(keys_of<MooneyRivlinLaw>())};
+  Keys<MooneyRivlinLaw> neo_hooke;
+  MooneyRivlinLaw::declare_neo_hooke(neo_hooke);
+  laws.push_back(material_of(neo_hooke));
+  laws.back().is = [](const void*) { return false; }; // written as what it is
+  for (const TableLaw::Kind kind : {TableLaw::Kind::pd_nurbs, TableLaw::Kind::le_nurbs}) {
+    Keys<TableLaw> keys;
+    TableLaw::declare(keys, kind);
+    keys.rule(TableLaw::check);
+    laws.push_back(material_of(keys));
+    laws.back().begin = [kind](void* value) {
+      static_cast<Material*>(value)->law = TableLaw{};
+      std::get<TableLaw>(static_cast<Material*>(value)->law).kind = kind;
+    };
+    laws.back().is = [kind](const void* value) {
+      const auto* law = std::get_if<TableLaw>(&static_cast<const Material*>(value)->law);
+      return law != nullptr && law->kind == kind;
+    };
+  }
+  return schema::tagged<Material>("law", std::move(laws));
+}
+
+void TableLaw::check(Reader& reader, const At<TableLaw>& law) {
+  const auto net_at = law[&TableLaw::net];
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (law->net[i] > law->degree) continue;
+    reader.fail(net_at.at(i, std::to_string(i)).path,
+                fmt::format("a net of degree {} needs at least {} control points, not {}", law->degree, law->degree + 1,
+                            law->net[i]));
+  }
+  if (law->kind == Kind::pd_nurbs && law->net[0] != law->net[1]) {
+    reader.fail(net_at.path, fmt::format("the net of an isotropic table is the same along both principal strains, not "
+                                         "{} x {}",
+                                         law->net[0], law->net[1]));
+  }
+  const std::string range_at = law[&TableLaw::range].path;
+  if (law->range && !((*law->range)[0] <= 0 && (*law->range)[1] > 0)) {
+    reader.fail(range_at, fmt::format("{} must hold the strain 0, from which the foil starts, and end above it: [{}, "
+                                      "{}] does not",
+                                      schema::name(&TableLaw::range), (*law->range)[0], (*law->range)[1]));
+  } else if (!law->range && law->fit_to) {
+    reader.fail(law.path, fmt::format("{} is missing: another material has strains without end; say which the table "
+                                      "shall hold",
+                                      schema::name(&TableLaw::range)));
+  }
+  const bool has_weight =
+      std::any_of(law->points.begin(), law->points.end(), [](const Point& point) { return point.weight > 0; });
+  if (!law->points.empty() && !has_weight) reader.fail(law[&TableLaw::points].path, "no point has a weight above 0");
+  const bool has_points = !law->data.empty() || !law->points.empty();
+  const bool has_shear = !law->shear_data.empty() || !law->shear_points.empty();
+  if (law->kind == Kind::le_nurbs && has_points && !has_shear) {
+    reader.fail(law.path, fmt::format("the key {} is missing: points along the axes say nothing about shear",
+                                      schema::name(&TableLaw::shear_data)));
+  }
+  if (law->fit_to && has_shear) {
+    reader.fail_key(law->shear_data.empty() ? law[&TableLaw::shear_points].path : law[&TableLaw::shear_data].path,
+                    fmt::format("shear cannot stand beside {}, which gives the shear too; leave it out",
+                                schema::name(&TableLaw::fit_to)));
+  }
+  if (reader.is_stage_file() && (!law->data.empty() || !law->shear_data.empty())) {
+    reader.fail_key(law->data.empty() ? law[&TableLaw::shear_data].path : law[&TableLaw::data].path,
+                    "files of tests are not for stage.yaml, which has their points; leave them out");
+  }
+}
+
+void Strength::check(Reader& reader, const At<Strength>& strength) {
+  const auto entries = items(strength[&Strength::temperature]);
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    if (entries[i]->at > entries[i - 1]->at) continue;
+    const auto at = entries[i][&AtTemperature::at];
+    reader.fail(at.path, fmt::format("temperatures must rise from entry to entry; {:.6g} degC does not",
+                                     schema::celsius(at.value)));
+  }
+}
+
+} // namespace pneuma::pipeline::workflow

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pipeline/workflow/settings.h"
+
+// What no key and no stage can know by itself: the graph of the stages, and what they say about foils, chambers and
+// the loads of stages before.
+namespace pneuma::pipeline::workflow {
+
+// Form of one stage; its id and the kind of the stage it starts from are found by `link`.
+Form<StageSettings> stage_form();
+
+// Fills in what kind each stage starts from and checks that every chain of them begins at the mesh. `written`: the
+// stages as they stand in the file, those with faults too.
+void link(Reader& reader, const schema::Node& written, std::vector<StageSettings>& stages);
+
+// Rules between the stages and the cushion, of complete ones.
+void check_stages(Reader& reader, const Workflow& workflow);
+
+// Puts in place what the user left open or said for all: every foil, chamber, edge and load has its own value then.
+// Needs a workflow without fault.
+void complete(Reader& reader, Workflow& workflow);
+
+} // namespace pneuma::pipeline::workflow
