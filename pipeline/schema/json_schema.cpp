@@ -18,6 +18,12 @@ constexpr const char* name_pattern = "^[A-Za-z0-9_-]+$";
 
 Json schema_of(const Option& option);
 
+// Says so of what the program does not offer yet.
+std::string not_available(const Option& option) {
+  if (option.not_yet.empty()) return "";
+  return fmt::format("`{}` is not available yet; {}", option.name, option.not_yet);
+}
+
 Json group_of(const Option& option, const std::string& tag) {
   Json json = {{"type", "object"}, {"additionalProperties", false}};
   Json properties = Json::object(), required = Json::array();
@@ -50,6 +56,7 @@ void add_limits(const Option& option, Json& json) {
 }
 
 Json body_of(const Option& option) {
+  if (!option.not_yet.empty()) return {{"not", Json::object()}}; // nothing fits
   switch (option.type) {
   case Type::text:
     return {{"type", {"string", "number", "boolean"}}};
@@ -67,7 +74,9 @@ Json body_of(const Option& option) {
     return {{"type", "string"}, {"pattern", R"(^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[^0-9\s].*$)"}};
   case Type::choice: {
     Json names = Json::array();
-    for (const Option& allowed : option.members()) names.push_back(allowed.name);
+    for (const Option& allowed : option.members()) {
+      if (allowed.not_yet.empty()) names.push_back(allowed.name);
+    }
     return {{"enum", std::move(names)}};
   }
   case Type::list: {
@@ -93,6 +102,7 @@ Json body_of(const Option& option) {
         kinds.push_back(schema_of(kind));
       } else {
         Json one = group_of(kind, option.tag);
+        if (!kind.not_yet.empty()) one = {{"description", not_available(kind)}, {"not", Json::object()}};
         if (option.default_value != kind.name) one["required"].push_back(option.tag);
         kinds.push_back(std::move(one));
       }
@@ -107,7 +117,12 @@ Json schema_of(const Option& option) {
   std::string text = option.text;
   if (option.type == Type::quantity) text += "; " + dimension_of(option.unit) + " with its unit";
   if (option.limits) text += ", " + option.limits->words;
-  if (!option.not_yet.empty()) text += " (not available yet; " + option.not_yet + ")";
+  if (!option.not_yet.empty()) text += not_available(option);
+  if (option.type == Type::choice) {
+    for (const Option& word : option.members()) {
+      if (!word.not_yet.empty()) text += "; " + not_available(word);
+    }
+  }
   Json json = body_of(option);
   Json described = {{"description", text}};
   described.update(json);

@@ -199,6 +199,10 @@ public:
     if (event.kind != NodeKind::list) return node;
     node.items.reserve(event.parts);
     for (std::size_t i = index + 1; i < event.end; i = events_[i].end) {
+      if (!node.items.empty() && has_comma(node.items.back(), events_[i])) {
+        node.items.back().text += "," + events_[i].text;
+        continue;
+      }
       node.items.push_back(build(i));
       // where nothing stands, the parser names the place of what comes next
       if (events_[i].kind == NodeKind::null && !events_[i].plain) node.items.back().mark = node.mark;
@@ -242,6 +246,16 @@ private:
     return found && (next == std::string_view::npos || text_[next] != ':');
   }
 
+  // `0,5 m` in brackets, which YAML takes for `0` and `5 m`: of one piece the quantity tells of its comma.
+  bool has_comma(const Node& before, const Event& rest) const {
+    constexpr const char* digits = "0123456789";
+    const std::size_t at = byte(rest.mark), sign = before.text.find_first_of("+-") == 0 ? 1 : 0;
+    return before.kind == NodeKind::scalar && rest.plain && rest.target == 0 && at > 0 && at < text_.size() &&
+           text_[at - 1] == ',' && before.text.size() > sign &&
+           before.text.find_first_not_of(digits, sign) == std::string::npos && rest.text.find_first_of(digits) == 0 &&
+           rest.text.find_first_not_of("0123456789.eE+-") != std::string::npos;
+  }
+
   void fill(Node& map, std::size_t index) {
     Lines lines;
     std::size_t merged = 0;
@@ -260,7 +274,11 @@ private:
         continue;
       }
       if (copies_ == 0 && events_[at].kind == NodeKind::null && lacks_colon(written)) {
-        report(mark, without_colon(key.text));
+        if (!map.entries.empty() && has_comma(map.entries.back().value, written)) {
+          map.entries.back().value.text += "," + key.text;
+        } else {
+          report(mark, without_colon(key.text));
+        }
         continue;
       }
       Node value = build(at);

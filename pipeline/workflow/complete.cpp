@@ -87,18 +87,18 @@ void complete(Reader& reader, Workflow& workflow) {
     if (auto* form = std::get_if<FormfindSettings>(&stage.settings)) {
       share(reader, cushion, form->gauge_pressure, path + ".gauge_pressure");
       spread(reader, form->prestress, path + ".prestress", foils);
-      if (form->stress.empty()) continue;
-      spread(reader, form->stress, path + ".stress", foils);
+      if (!form->stress) continue;
+      spread(reader, *form->stress, path + ".stress", foils);
       reader.came_from(path + ".prestress", path + ".stress");
       for (const FoilSettings& foil : cushion.foils) {
-        form->prestress[foil.name] = form->stress.at(foil.name) * foil.thickness;
+        form->prestress[foil.name] = form->stress->at(foil.name) * foil.thickness;
       }
-      form->stress.clear();
+      form->stress.reset();
     } else if (auto* pattern = std::get_if<PatternSettings>(&stage.settings)) {
       spread(reader, pattern->curves, path + ".curves", pattern->foils.value_or(foils));
     } else if (auto* inflate = std::get_if<InflateSettings>(&stage.settings)) {
       share(reader, cushion, inflate->gauge_pressure, path + ".gauge_pressure");
-      spread(reader, inflate->prestress, path + ".prestress", foils);
+      if (inflate->prestress) spread(reader, *inflate->prestress, path + ".prestress", foils);
       complete_path(reader, cushion, *inflate, path);
     } else if (auto* wind = std::get_if<WindSettings>(&stage.settings)) {
       complete_wind(cushion, *wind);

@@ -19,9 +19,9 @@ struct SolverOptions {
 };
 
 struct FormfindSettings {
-  std::map<std::string, double> gauge_pressure; // chamber -> Pa, every chamber present
-  std::map<std::string, double> prestress;      // foil -> N/m, every foil present
-  std::map<std::string, double> stress;         // as the user may say it, Pa; turned into prestress
+  std::map<std::string, double> gauge_pressure;        // chamber -> Pa, every chamber present
+  std::map<std::string, double> prestress;             // foil -> N/m, every foil present
+  std::optional<std::map<std::string, double>> stress; // as the user may say it, Pa; turned into prestress
   SolverOptions options;
 
   template <class K>
@@ -30,7 +30,7 @@ struct FormfindSettings {
     const char* isotropic = "an isotropic prestress (or stress) per foil is available: {all: 0.89 kN/m}";
     keys("gauge_pressure", &Self::gauge_pressure, gauge_pressures(), "the pressure of the form");
     Form<double> warp_weft{schema::option_of(schema::Type::group), {}};
-    warp_weft.option.not_yet = isotropic;
+    warp_weft.option.name = "{warp: ..., weft: ...}", warp_weft.option.not_yet = isotropic;
     keys("prestress", &Self::prestress,
          table(either<double>({isotropic_prestress(), warp_weft}, [](double) { return 0; })
                    .named("FOIL", "prestress of a foil or `all`"),
@@ -46,9 +46,7 @@ struct FormfindSettings {
                    .named("FOIL", "stress, times the nominal thickness"),
                "foil", all)
              .items(1, 1000),
-         "stress of a foil or `all`")
-        .or_another()
-        .where([](const auto& settings) { return !settings.stress.empty(); }, "");
+         "stress of a foil or `all`");
     keys.unavailable("sag", isotropic);
     keys.unavailable("volume", isotropic);
     keys("options", &Self::options, group<SolverOptions>().otherwise("{}"), "of the solver");

@@ -8,9 +8,9 @@ namespace pneuma::pipeline::workflow {
 enum class Reference : std::uint8_t { prestressed, stress_free };
 
 struct InflateSettings : PathSettings {
-  std::map<std::string, double> gauge_pressure; // chamber -> Pa
-  std::optional<Reference> reference;           // required from a formfind stage
-  std::map<std::string, double> prestress;      // foil -> N/m; only from `mesh`; empty: stress-free
+  std::map<std::string, double> gauge_pressure;           // chamber -> Pa
+  std::optional<Reference> reference;                     // required from a formfind stage
+  std::optional<std::map<std::string, double>> prestress; // foil -> N/m; only from `mesh`; none: stress-free
 
   template <class K>
   static void declare(K& keys) {
@@ -23,9 +23,7 @@ struct InflateSettings : PathSettings {
     keys("prestress", &Self::prestress,
          table(isotropic_prestress().named("prestress", "force per length, the same in all directions"), "foil", all)
              .items(1, 1000),
-         "of a flat start, per foil or `all`")
-        .or_another()
-        .where([](const auto& settings) { return !settings.prestress.empty(); }, "");
+         "of a flat start, per foil or `all`");
     PathSettings::declare(keys);
     keys.is("inflate", "raises the pressure");
   }

@@ -55,7 +55,11 @@ struct Allowance {
   template <class K>
   static void declare(K& keys) {
     keys("clamp", &Allowance::clamp,
-         quantity("m").at_least(0, "at least 0 m").usual(0, 0.5, "usually up to 0.5 m").otherwise("30 mm"),
+         quantity("m")
+             .at_least(0, "at least 0 m")
+             .usual(0, 0.5, "usually up to 0.5 m")
+             .such_as("30 mm")
+             .otherwise("30 mm"),
          "of film beyond the clamped edge");
     keys("notches", &Allowance::notches,
          quantity("m").positive().usual(0.02, 10, "usually 2 cm to 10 m").such_as("0.5 m").otherwise("0.5 m"),

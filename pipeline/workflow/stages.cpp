@@ -128,7 +128,7 @@ void check_pressures(Reader& reader, const Cushion& cushion, const std::map<std:
       const auto sharing = std::find_if(pressures.begin(), pressures.end(),
                                         [&](const auto& one) { return cushion.air_of(one.first) == chamber.name; });
       reader.fail(path,
-                  fmt::format("`gauge_pressure` says nothing about the chamber `{}`; {}", chamber.name,
+                  fmt::format("{} says nothing about the chamber `{}`; {}", reader.title(path), chamber.name,
                               sharing == pressures.end()
                                   ? "0 Pa leaves it empty"
                                   : fmt::format("`{}` is connected to it and takes its pressure", sharing->first)));
@@ -167,11 +167,11 @@ void check_mesh(Reader& reader, const Cushion& cushion, const At<MeshSettings>& 
   const double area = geometry::area(cushion.plan);
   const double elements = area / (*mesh->size * *mesh->size);
   if (elements < 1) {
-    reader.warn(path, fmt::format("`size` {} m is larger than the cushion (about {:.3g} m); is it meant?", *mesh->size,
-                                  std::sqrt(area)));
+    reader.warn(path, fmt::format("{} {} m is larger than the cushion (about {:.3g} m); is it meant?",
+                                  reader.title(path), *mesh->size, std::sqrt(area)));
   } else if (elements > 500'000) {
-    reader.warn(path,
-                fmt::format("`size` {} m makes about {:.0e} elements a foil; is it meant?", *mesh->size, elements));
+    reader.warn(path, fmt::format("{} {} m makes about {:.0e} elements a foil; is it meant?", reader.title(path),
+                                  *mesh->size, elements));
   }
 }
 
@@ -180,12 +180,12 @@ void check_inflate(Reader& reader, const StageSettings& stage, const At<InflateS
   const std::string prestress = inflate[&InflateSettings::prestress].path;
   if (stage.from_run == "formfind") {
     if (!inflate->reference) {
-      reader.fail(inflate.path,
-                  "from a formfind stage, `reference` must say what the found form is: prestressed or stress_free");
+      reader.fail(inflate.path, "from a formfind stage, " + schema::name(&InflateSettings::reference) +
+                                    " must say what the found form is: prestressed or stress_free");
     }
-    if (!inflate->prestress.empty()) {
-      reader.fail_key(prestress,
-                      "`prestress` is for a start from mesh; from a formfind stage use `reference: prestressed`");
+    if (inflate->prestress) {
+      reader.fail_key(prestress, reader.title(prestress) +
+                                     " is for a start from mesh; from a formfind stage use `reference: prestressed`");
     }
   } else if (stage.from_run == "pattern") {
     for (const std::string& path : {reference, prestress}) {
@@ -194,10 +194,10 @@ void check_inflate(Reader& reader, const StageSettings& stage, const At<InflateS
                                                  "are the reference; leave it out");
     }
   } else if (stage.from_run == "mesh" && inflate->reference) {
-    reader.fail_key(reference, "`reference` is for a start from a formfind stage; from mesh the flat plan is the "
-                               "reference");
+    reader.fail_key(reference, reader.title(reference) +
+                                   " is for a start from a formfind stage; from mesh the flat plan is the reference");
   }
-  check_foils(reader, inflate->prestress, prestress);
+  if (inflate->prestress) check_foils(reader, *inflate->prestress, prestress);
 }
 
 // The foil or chamber that a control must name where there are several.
@@ -267,14 +267,14 @@ void check_pattern(Reader& reader, const At<PatternSettings>& pattern) {
   // which foils are flat and need no curves only the stage knows; those it is told to cut do
   for (const std::string& foil : cut) {
     if (curves->contains(foil) || curves->contains(all)) continue;
-    reader.fail(curves.path,
-                fmt::format("`curves` says nothing about the foil `{}` of `foils`; name it, or use `all`", foil));
+    reader.fail(curves.path, fmt::format("{} says nothing about the foil `{}` of {}; name it, or use `all`",
+                                         reader.title(curves.path), foil, schema::name(&PatternSettings::foils)));
   }
   for (const auto& [foil, lines] : curves.value) {
     if (foil == all || std::find(cut.begin(), cut.end(), foil) != cut.end()) continue;
     reader.fail_key(curves.at(lines, foil).path,
-                    fmt::format("`foils` does not name `{}`, so its curves have no effect; foils to be cut: {}", foil,
-                                fmt::join(cut, ", ")));
+                    fmt::format("{} does not name `{}`, so its curves have no effect; foils to be cut: {}",
+                                schema::name(&PatternSettings::foils), foil, fmt::join(cut, ", ")));
   }
 }
 
@@ -299,9 +299,9 @@ public:
     for (const At<Load>& load : items(at[&WindSettings::loads])) {
       const std::size_t since = last_with(load->name, before_[i]);
       if (since == none) continue;
-      reader_.fail(load.path, fmt::format("load `{}` acts since stage `{}`: to change it give its factor in `factors`, "
+      reader_.fail(load.path, fmt::format("load `{}` acts since stage `{}`: to change it give its factor in {}, "
                                           "or choose another name",
-                                          load->name, stages_[since].id));
+                                          load->name, stages_[since].id, schema::name(&WindSettings::factors)));
     }
     // in stage.yaml the stage itself knows the names of the state that it starts from
     if (reader_.is_stage_file() && stages_[i].from_run == "wind") return;
@@ -347,7 +347,7 @@ void check_stages(Reader& reader, const Workflow& workflow) {
     if (const auto* form = std::get_if<FormfindSettings>(&stage.settings)) {
       const At<FormfindSettings> at{*form, path};
       check_foils(reader, form->prestress, at[&FormfindSettings::prestress].path);
-      check_foils(reader, form->stress, at[&FormfindSettings::stress].path);
+      if (form->stress) check_foils(reader, *form->stress, at[&FormfindSettings::stress].path);
       if (cushion_known) {
         check_pressures(reader, cushion, form->gauge_pressure, at[&FormfindSettings::gauge_pressure].path);
       }
@@ -363,7 +363,7 @@ void check_stages(Reader& reader, const Workflow& workflow) {
       check_control(reader, cushion, {*wind, path}, wind->gas);
     } else if (const auto* pattern = std::get_if<PatternSettings>(&stage.settings)) {
       check_pattern(reader, {*pattern, path});
-    } else if (reader.is_whole("cushion.plan")) {
+    } else if (reader.given("cushion.plan") && reader.is_whole("cushion.plan")) {
       check_mesh(reader, cushion, {std::get<MeshSettings>(stage.settings), path});
     }
   }

@@ -57,8 +57,8 @@ int run(int argc, char** argv) {
     } else if (!from_form && !from_strips) {
       foil.reference =
           solver::element::corner_coordinates(drive.state.mesh.blocks[b].connectivity, drive.state.mesh.nodes);
-      if (!settings.prestress.empty()) {
-        const double n = settings.prestress.at(start.workflow.cushion.foils[b].name);
+      if (settings.prestress) {
+        const double n = settings.prestress->at(start.workflow.cushion.foils[b].name);
         const std::size_t points =
             foil.reference.size() /
             (3 * static_cast<std::size_t>(geometry::nodes_per_element(drive.state.mesh.element))) *
