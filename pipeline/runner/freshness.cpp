@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/digest/digest.h"
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
 namespace pneuma::pipeline::runner {
 
@@ -53,10 +53,10 @@ std::string good_state(const StageFiles& files) {
 
 std::string changed_keys(const std::string& before, const std::string& after) {
   const auto values = [](const std::string& text) {
-    std::vector<schema::Problem> ignored;
-    const schema::Node tree = schema::parse_yaml(text, "stage.yaml", ignored);
+    std::vector<yaml::Problem> ignored;
+    const yaml::Node tree = yaml::parse_yaml(text, "stage.yaml", ignored);
     std::map<std::string, std::string> by_path;
-    for (const auto& [path, leaf] : schema::leaves(tree)) {
+    for (const auto& [path, leaf] : yaml::leaves(tree)) {
       if (!path.starts_with("origin.") && path != "name") by_path[path] = leaf->text;
     }
     return by_path;
@@ -84,8 +84,8 @@ Verdict examine(const StageFiles& files, const Provenance& wanted, const std::st
   if (!made)
     return {false, std::filesystem::exists(files.config) ? "it did not finish last time" : "it has not run yet"};
   if (made->settings != wanted.settings) {
-    std::vector<schema::Problem> ignored;
-    const std::string keys = changed_keys(schema::read_text(files.config, {}, ignored), stage_yaml);
+    std::vector<yaml::Problem> ignored;
+    const std::string keys = changed_keys(yaml::read_text(files.config, {}, ignored), stage_yaml);
     return {false, keys.empty() ? "settings changed" : fmt::format("settings changed ({})", keys)};
   }
   if (made->input != wanted.input) return {false, "the state it starts from changed"};

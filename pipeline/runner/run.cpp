@@ -202,8 +202,8 @@ private:
       one.state = good_state(one.files);
       one.progress = Progress::done;
       // lines of the user's file may have moved
-      std::vector<schema::Problem> ignored;
-      if (schema::read_text(one.files.config, {}, ignored) != config) std::ofstream(one.files.config) << config;
+      std::vector<yaml::Problem> ignored;
+      if (yaml::read_text(one.files.config, {}, ignored) != config) std::ofstream(one.files.config) << config;
       return say(fmt::format("{}: up to date", one.stage->id));
     }
     say(fmt::format("{}: runs: {}", one.stage->id, verdict.fresh ? "asked for" : verdict.reason));

@@ -7,9 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
 namespace pneuma::pipeline::schema {
+
+using yaml::add;
+using yaml::Entry;
+using yaml::find;
+using yaml::Mark;
+using yaml::Node;
+using yaml::NodeKind;
+using yaml::Problem;
+using yaml::scalar;
 
 enum class Type : std::uint8_t {
   text,

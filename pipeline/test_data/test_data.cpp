@@ -18,8 +18,8 @@ namespace pneuma::pipeline::test_data {
 
 namespace {
 
-using schema::Mark;
-using schema::Problem;
+using yaml::Mark;
+using yaml::Problem;
 
 struct Column {
   const char* name;
@@ -441,13 +441,13 @@ Row converted(const Row& row, Measure from, Measure to) {
   return out;
 }
 
-Tests read_tests(const std::vector<std::string>& files, const schema::Mark& named, Measure measure,
+Tests read_tests(const std::vector<std::string>& files, const yaml::Mark& named, Measure measure,
                  const std::vector<std::string>& needed, std::vector<Problem>& problems) {
   Tests tests;
   for (const std::string& text : files) {
     const auto file = (std::filesystem::path(named.file).parent_path() / text).lexically_normal();
     const std::size_t before = problems.size();
-    const std::string content = schema::read_text(file, named, problems);
+    const std::string content = yaml::read_text(file, named, problems);
     if (problems.size() > before) continue;
     for (const Row& row : parse(content, file.generic_string(), measure, needed, problems)) {
       tests.rows.push_back(converted(row, measure, Measure::green_lagrange));

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
 namespace pneuma::pipeline::test_data {
 
@@ -35,7 +35,7 @@ struct Row {
 // columns without which it is of no use. Every fault is a problem at its line and column; rows that have one are left
 // out. What is implausible (units, stress that falls, strains that come again) is a warning there, once for each kind.
 std::vector<Row> parse(const std::string& text, const std::string& name, Measure measure,
-                       const std::vector<std::string>& needed, std::vector<schema::Problem>& problems);
+                       const std::vector<std::string>& needed, std::vector<yaml::Problem>& problems);
 
 // Strains and stresses of a row in the other measure: stretch l = 1 + e = sqrt(1 + 2 E), nominal stress = l S (no shear
 // between 1 and 2). Shear stays as it is.
@@ -44,12 +44,12 @@ Row converted(const Row& row, Measure from, Measure to);
 // The rows of several files, one after the other, as Green-Lagrange strains and second Piola-Kirchhoff stresses.
 struct Tests {
   std::vector<Row> rows;
-  std::vector<schema::Mark> marks;                   // where each stands
+  std::vector<yaml::Mark> marks;                     // where each stands
   std::optional<std::array<double, 2>> temperatures; // least and most, K
 };
 
 // Reads files that lie beside the one that names them, at `named`.
-Tests read_tests(const std::vector<std::string>& files, const schema::Mark& named, Measure measure,
-                 const std::vector<std::string>& needed, std::vector<schema::Problem>& problems);
+Tests read_tests(const std::vector<std::string>& files, const yaml::Mark& named, Measure measure,
+                 const std::vector<std::string>& needed, std::vector<yaml::Problem>& problems);
 
 } // namespace pneuma::pipeline::test_data

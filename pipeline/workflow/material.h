@@ -9,7 +9,7 @@
 // (solver/material), asked by the stages.
 namespace pneuma::pipeline::workflow {
 
-using schema::Mark; // where a value stands in the user's file
+using yaml::Mark; // where a value stands in the user's file
 
 inline Form<double> youngs_modulus() {
   return quantity("Pa").positive().usual(1e6, 1e10, "foils have 1 MPa to 10 GPa").such_as("900 MPa");

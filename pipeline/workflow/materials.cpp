@@ -12,7 +12,7 @@ namespace pneuma::pipeline::workflow {
 namespace {
 
 using schema::celsius;
-using schema::NodeKind;
+using yaml::NodeKind;
 
 // stage.yaml carries the points of a table.
 constexpr std::size_t most_points = 10'000;
@@ -34,9 +34,9 @@ std::string fit_of(const Materials& materials, const std::string& name) {
 
 } // namespace
 
-void read_materials(Reader& reader, const schema::Node& node, Materials& out) {
+void read_materials(Reader& reader, const yaml::Node& node, Materials& out) {
   static const Form<Materials> form = table(material());
-  for (const schema::Entry& entry : node.entries) reader.define("material", entry.key, entry.mark);
+  for (const yaml::Entry& entry : node.entries) reader.define("material", entry.key, entry.mark);
   Materials read;
   form.read(reader, node, "materials", read);
   for (auto& [name, one] : read) {
@@ -47,10 +47,10 @@ void read_materials(Reader& reader, const schema::Node& node, Materials& out) {
 
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out) {
   const std::size_t before = reader.problems.size();
-  const std::string text = schema::read_text(file, named, reader.problems);
-  schema::Node parsed = schema::parse_yaml(text, file.generic_string(), reader.problems);
-  schema::drop_templates(parsed);
-  const schema::Node& tree = reader.keep(std::move(parsed));
+  const std::string text = yaml::read_text(file, named, reader.problems);
+  yaml::Node parsed = yaml::parse_yaml(text, file.generic_string(), reader.problems);
+  yaml::drop_templates(parsed);
+  const yaml::Node& tree = reader.keep(std::move(parsed));
   if (reader.problems.size() > before && tree.kind == NodeKind::null) return reader.cannot_know("material");
   if (tree.kind == NodeKind::map) return read_materials(reader, tree, out);
   reader.cannot_know("material");
@@ -169,8 +169,8 @@ void find_places(const Reader& reader, Material& material) {
   const std::string path = path_of(material.name);
   // of keys stage.yaml does not say where the user has them
   material.places[""] = reader.is_stage_file() ? reader.mark(path) : reader.key_mark(path);
-  const schema::Node written = form.write(material);
-  for (const auto& [key, leaf] : schema::leaves(written)) {
+  const yaml::Node written = form.write(material);
+  for (const auto& [key, leaf] : yaml::leaves(written)) {
     if (key.starts_with("points.") || key.starts_with("shear_points.")) continue;
     if (const std::optional<Mark> place = reader.origin(path + "." + key)) material.places[key] = *place;
   }

@@ -12,7 +12,7 @@ namespace pneuma::pipeline::workflow {
 using Materials = std::map<std::string, Material>;
 
 // The materials of a map of them; every name is defined, those without fault are read.
-void read_materials(Reader& reader, const schema::Node& node, Materials& out);
+void read_materials(Reader& reader, const yaml::Node& node, Materials& out);
 
 // The same of a file, which is named at a place.
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out);

@@ -15,8 +15,8 @@ namespace pneuma::pipeline::workflow {
 
 namespace {
 
-using schema::Node;
-using schema::NodeKind;
+using yaml::Node;
+using yaml::NodeKind;
 
 constexpr int stage_format = 2;            // of stage.yaml
 constexpr std::size_t most_problems = 200; // that are told
@@ -122,9 +122,9 @@ std::optional<Mark> parse_mark(const std::string& text) {
 std::map<std::string, Mark> take_origins(Node& tree) {
   std::map<std::string, Mark> origins;
   const auto found = std::find_if(tree.entries.begin(), tree.entries.end(),
-                                  [](const schema::Entry& entry) { return entry.key == "origin"; });
+                                  [](const yaml::Entry& entry) { return entry.key == "origin"; });
   if (found == tree.entries.end()) return origins;
-  for (const schema::Entry& entry : found->value.entries) {
+  for (const yaml::Entry& entry : found->value.entries) {
     if (const auto mark = parse_mark(entry.value.text)) origins[entry.key] = *mark;
   }
   tree.entries.erase(found);
@@ -143,11 +143,11 @@ std::string folder_relative(const std::filesystem::path& file, const std::filesy
 // The materials that the foils use, with the points of their tables.
 void read_materials_of(Reader& reader, File& file, const Node& tree, Workflow& out) {
   const auto* files = std::get_if<std::vector<std::string>>(&file.materials);
-  const Node* node = schema::find(tree, "materials");
+  const Node* node = yaml::find(tree, "materials");
   if (node == nullptr || (node->kind != NodeKind::map && !reader.is_whole("materials"))) {
     reader.cannot_know("material");
   } else if (node->kind == NodeKind::map) {
-    for (const schema::Entry& entry : node->entries) reader.define("material", entry.key, entry.mark);
+    for (const yaml::Entry& entry : node->entries) reader.define("material", entry.key, entry.mark);
     if (auto* in_place = std::get_if<Materials>(&file.materials)) out.materials = std::move(*in_place);
     for (auto& [name, material] : out.materials) material.name = name;
   } else {
@@ -185,8 +185,8 @@ void check_gravity(Reader& reader, const Workflow& workflow) {
 // In the order of the file, `mesh` first.
 void read_stages(File& file, const Node& tree, Workflow& out) {
   if (file.mesh) out.stages.push_back({"mesh", "mesh", "", "", *file.mesh});
-  const Node* stages = schema::find(tree, "stages");
-  for (const schema::Entry& entry : stages != nullptr ? stages->entries : std::vector<schema::Entry>{}) {
+  const Node* stages = yaml::find(tree, "stages");
+  for (const yaml::Entry& entry : stages != nullptr ? stages->entries : std::vector<yaml::Entry>{}) {
     const auto found = file.stages.find(entry.key);
     if (found == file.stages.end()) continue;
     out.stages.push_back(std::move(found->second));
@@ -218,7 +218,7 @@ Node settings_node(const Workflow& workflow, const StageSettings* stage) {
 
 void add_origins(const Reader& reader, const Node& node, const std::string& path, Workflow& out) {
   std::map<std::string, std::string> relative; // of each file
-  for (const auto& [leaf, value] : schema::leaves(node)) {
+  for (const auto& [leaf, value] : yaml::leaves(node)) {
     const std::string at = schema::below(path, leaf);
     std::optional<Mark> mark = reader.origin(at);
     if (!mark) continue;
@@ -240,7 +240,7 @@ Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& pa
   out.cushion = file.cushion;
   read_stages(file, tree, out);
   read_materials_of(reader, file, tree, out);
-  const Node* stages = schema::find(tree, "stages");
+  const Node* stages = yaml::find(tree, "stages");
   if (stages != nullptr && stages->kind == NodeKind::map) link(reader, *stages, out.stages);
   reader.check_references();
   if (reader.is_whole("site")) check_gravity(reader, out);
@@ -264,9 +264,9 @@ Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& pa
 ReadResult read_workflow(const std::filesystem::path& file) {
   Reader reader;
   const std::string name = file.generic_string();
-  const std::string text = schema::read_text(file, {name, 1, 1}, reader.problems);
-  Node parsed = schema::parse_yaml(text, name, reader.problems);
-  schema::drop_templates(parsed);
+  const std::string text = yaml::read_text(file, {name, 1, 1}, reader.problems);
+  Node parsed = yaml::parse_yaml(text, name, reader.problems);
+  yaml::drop_templates(parsed);
   const Node& tree = reader.keep(std::move(parsed));
   ReadResult result;
   result.workflow.file = file;
@@ -307,16 +307,16 @@ MaterialsResult read_materials(const std::filesystem::path& file, const std::vec
 Workflow read_stage(const std::filesystem::path& file) {
   Reader reader(true);
   const std::string name = file.generic_string();
-  const std::string text = schema::read_text(file, {name, 1, 1}, reader.problems);
-  Node tree = schema::parse_yaml(text, name, reader.problems);
+  const std::string text = yaml::read_text(file, {name, 1, 1}, reader.problems);
+  Node tree = yaml::parse_yaml(text, name, reader.problems);
   const std::map<std::string, Mark> origins = take_origins(tree);
-  if (schema::find(tree, "pneuma") != nullptr && schema::find(tree, "format") == nullptr) {
+  if (yaml::find(tree, "pneuma") != nullptr && yaml::find(tree, "format") == nullptr) {
     const char* what = origins.empty()
                            ? "this is a workflow file, not the stage.yaml of a stage; run it with `pneuma run`"
                            : "this stage.yaml was written by an older version; run the workflow again";
     throw base::InputError(to_string(Problem{tree.mark, what}));
   }
-  schema::replace_marks(tree, origins);
+  yaml::replace_marks(tree, origins);
   Workflow workflow;
   if (tree.kind != NodeKind::null) workflow = build(reader, reader.keep(std::move(tree)), file);
   workflow.origins = origins;
@@ -334,24 +334,24 @@ Workflow read_stage(const std::filesystem::path& file) {
 
 // The name of the project is left out: it changes no result.
 std::string effective_settings(const Workflow& workflow, const StageSettings& stage) {
-  return schema::write_yaml(settings_node(workflow, &stage));
+  return yaml::write_yaml(settings_node(workflow, &stage));
 }
 
 std::string stage_yaml(const Workflow& workflow, const StageSettings& stage) {
   Node node;
-  add(node, "format", schema::scalar(fmt::format("{}", stage_format)));
-  add(node, "name", schema::scalar(workflow.name));
+  add(node, "format", yaml::scalar(fmt::format("{}", stage_format)));
+  add(node, "name", yaml::scalar(workflow.name));
   Node settings = settings_node(workflow, &stage);
-  for (schema::Entry& entry : settings.entries) node.entries.push_back(std::move(entry));
+  for (yaml::Entry& entry : settings.entries) node.entries.push_back(std::move(entry));
   // where the values come from; what is not listed is a default
   Node origin;
   origin.kind = NodeKind::map;
-  for (const auto& [path, leaf] : schema::leaves(node)) {
+  for (const auto& [path, leaf] : yaml::leaves(node)) {
     const auto known = workflow.origins.find(path);
-    if (known != workflow.origins.end()) add(origin, path, schema::scalar(to_string(known->second)));
+    if (known != workflow.origins.end()) add(origin, path, yaml::scalar(to_string(known->second)));
   }
   add(node, "origin", std::move(origin));
-  return schema::write_yaml(node);
+  return yaml::write_yaml(node);
 }
 
 std::string workflow_json_schema() {

@@ -15,8 +15,8 @@
 // filled in.
 namespace pneuma::pipeline::workflow {
 
-using schema::Problem;   // one thing wrong in a user's file
-using schema::to_string; // "cushion.yaml:14:22"
+using yaml::Problem;   // one thing wrong in a user's file
+using yaml::to_string; // "cushion.yaml:14:22"
 
 struct StageSettings {
   std::string id;

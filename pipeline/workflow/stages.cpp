@@ -14,7 +14,7 @@ namespace pneuma::pipeline::workflow {
 namespace {
 
 using schema::below;
-using schema::Node;
+using yaml::Node;
 
 std::string path_of(const StageSettings& stage) {
   return stage.run == "mesh" ? "mesh" : "stages." + stage.id;
@@ -48,7 +48,7 @@ Form<StageSettings> stage_form() {
 namespace {
 
 std::string text_of(const Node& map, const char* key) {
-  const Node* value = schema::find(map, key);
+  const Node* value = yaml::find(map, key);
   return value != nullptr ? value->text : "";
 }
 
@@ -65,7 +65,7 @@ void link(Reader& reader, const Node& written, std::vector<StageSettings>& stage
   if (reader.is_stage_file()) return;
   std::map<std::string, std::string> runs = {{"mesh", "mesh"}}, froms; // of stages with faults too
   std::vector<std::string> ids = {"mesh"};
-  for (const schema::Entry& entry : written.entries) {
+  for (const yaml::Entry& entry : written.entries) {
     if (entry.key == "mesh") {
       reader.fail(entry.mark,
                   "a stage cannot be called `mesh`: this is the stage that the key `mesh` at the top level makes");

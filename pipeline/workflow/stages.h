@@ -12,7 +12,7 @@ Form<StageSettings> stage_form();
 
 // Fills in what kind each stage starts from and checks that every chain of them begins at the mesh. `written`: the
 // stages as they stand in the file, those with faults too.
-void link(Reader& reader, const schema::Node& written, std::vector<StageSettings>& stages);
+void link(Reader& reader, const yaml::Node& written, std::vector<StageSettings>& stages);
 
 // Rules between the stages and the cushion, of complete ones.
 void check_stages(Reader& reader, const Workflow& workflow);

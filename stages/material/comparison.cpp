@@ -8,8 +8,8 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
-#include "pipeline/schema/text.h"
 #include "pipeline/test_data/test_data.h"
+#include "pipeline/yaml/text.h"
 
 namespace pneuma::stages::material {
 
@@ -68,11 +68,11 @@ std::optional<double> temperature_of(const std::vector<pipeline::test_data::Row>
 
 TestCurve read_test(const std::filesystem::path& file) {
   namespace test_data = pipeline::test_data;
-  std::vector<pipeline::schema::Problem> problems;
+  std::vector<pipeline::yaml::Problem> problems;
   const std::string name = file.generic_string();
-  const std::string text = pipeline::schema::read_text(file, {"--data", 0, 0}, problems);
+  const std::string text = pipeline::yaml::read_text(file, {"--data", 0, 0}, problems);
   if (!problems.empty()) {
-    throw base::InputError(fmt::format("--data: {}", pipeline::schema::printable(problems.front().message)));
+    throw base::InputError(fmt::format("--data: {}", pipeline::yaml::printable(problems.front().message)));
   }
   const bool has_shear = text.find("shear_strain") != std::string::npos;
   const bool is_shear = has_shear && text.find("strain_1") == std::string::npos;
@@ -85,7 +85,7 @@ TestCurve read_test(const std::filesystem::path& file) {
       if (std::abs(one) > std::abs(strain)) strain = one;
     }
     if (std::abs(strain) <= most_strain) continue;
-    pipeline::schema::Problem problem;
+    pipeline::yaml::Problem problem;
     problem.mark = {name, row.line, 1};
     problem.message = fmt::format("a strain of {:.4g} %: tests are compared up to {:g} %; is its unit right?",
                                   100 * strain, 100 * most_strain);

@@ -11,9 +11,9 @@ namespace pneuma::pipeline::test_data {
 namespace {
 
 std::vector<Row> read_good(const std::string& text) {
-  std::vector<schema::Problem> problems;
+  std::vector<yaml::Problem> problems;
   std::vector<Row> rows = parse(text, "t.csv", Measure::engineering, {}, problems);
-  for (const schema::Problem& problem : problems) ADD_FAILURE() << to_string(problem);
+  for (const yaml::Problem& problem : problems) ADD_FAILURE() << to_string(problem);
   return rows;
 }
 
@@ -97,7 +97,7 @@ std::ostream& operator<<(std::ostream& out, const Bad& bad) {
 class BadTestData : public testing::TestWithParam<Bad> {};
 
 TEST_P(BadTestData, AreToldWhatAndWhere) {
-  std::vector<schema::Problem> problems;
+  std::vector<yaml::Problem> problems;
   parse(GetParam().text, "t.csv", Measure::engineering, {"strain_1", "stress_1"}, problems);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_THAT(to_string(problems.front()), testing::HasSubstr(GetParam().message));
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, BadTestData, testing::ValuesIn(cases),
                          [](const auto& tested) { return std::string(tested.param.claim); });
 
 TEST(BadTestDataFile, OfASpreadsheetIsNotReadAsText) {
-  std::vector<schema::Problem> problems;
+  std::vector<yaml::Problem> problems;
   using namespace std::string_literals;
   parse("\xFF\xFEs\0t\0r\0"s, "t.csv", Measure::engineering, {}, problems); // UTF-16
   ASSERT_EQ(problems.size(), 1u);
@@ -172,10 +172,10 @@ TEST(BadTestDataFile, OfASpreadsheetIsNotReadAsText) {
 }
 
 std::string warnings_about(const std::string& text) {
-  std::vector<schema::Problem> problems;
+  std::vector<yaml::Problem> problems;
   EXPECT_FALSE(parse(text, "t.csv", Measure::engineering, {}, problems).empty());
   std::string all;
-  for (const schema::Problem& problem : problems) {
+  for (const yaml::Problem& problem : problems) {
     EXPECT_FALSE(problem.error) << to_string(problem);
     all += to_string(problem) + "\n";
   }

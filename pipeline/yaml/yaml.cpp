@@ -9,11 +9,11 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
-#include "pipeline/schema/node.h"
-#include "pipeline/schema/slip.h"
-#include "pipeline/schema/text.h"
+#include "pipeline/yaml/node.h"
+#include "pipeline/yaml/slip.h"
+#include "pipeline/yaml/text.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 namespace {
 
@@ -369,4 +369,4 @@ Node parse_yaml(const std::string& text, const std::string& name, std::vector<Pr
   return Builder(recorder.events, text, name, problems).build(0);
 }
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 namespace {
 
 using testing::ElementsAre;
@@ -148,4 +148,4 @@ TEST(Yaml, LeavesHaveThePathOfTheirKeys) {
 }
 
 } // namespace
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

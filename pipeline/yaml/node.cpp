@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/schema/text.h"
+#include "pipeline/yaml/text.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 std::string to_string(const Mark& mark) {
   return fmt::format("{}:{}:{}", printable(mark.file), mark.line, mark.column);
@@ -178,4 +178,4 @@ void replace_marks(Node& node, const std::map<std::string, Mark>& marks) {
   settle(settle, node);
 }
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

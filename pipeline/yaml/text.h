@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 // One character of a text in UTF-8; a byte that begins none is a character of its own which is not valid.
 struct Character {
@@ -21,4 +21,4 @@ bool is_control(char32_t code);
 // The text in one line without anything that a terminal obeys: `\n`, `\x1b`, `\u202e`; at most about 1000 bytes.
 std::string printable(std::string_view text);
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/schema/slip.h"
+#include "pipeline/yaml/slip.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/exceptions.h>
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 namespace {
 
@@ -291,4 +291,4 @@ Problem slip(std::string_view text, std::size_t at, const std::string& complaint
   return {mark_at(text, found.at, name), "not valid YAML: " + found.words};
 }
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

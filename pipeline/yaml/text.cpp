@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/schema/text.h"
+#include "pipeline/yaml/text.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::string read_text(const std::filesystem::path& file, const Mark& where, std:
   return {};
 }
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

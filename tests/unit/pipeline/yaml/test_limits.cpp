@@ -11,9 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 namespace {
 
 using testing::ElementsAre;
@@ -170,4 +170,4 @@ TEST(ReadText, OnlyRegularFilesOfBoundedSizeAreRead) {
 }
 
 } // namespace
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/schema/node.h"
+#include "pipeline/yaml/node.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 // The place of a byte of the text.
 Mark mark_at(std::string_view text, std::size_t at, const std::string& name);
@@ -21,4 +21,4 @@ std::optional<Problem> open_quote(std::string_view text, std::size_t at, const s
 // What is wrong where yaml-cpp gave up with `complaint`, in words and at the place where the slip began.
 Problem slip(std::string_view text, std::size_t at, const std::string& complaint, const std::string& name);
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

@@ -7,10 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/schema/node.h"
-#include "pipeline/schema/text.h"
+#include "pipeline/yaml/node.h"
+#include "pipeline/yaml/text.h"
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 namespace {
 
 struct Case {
@@ -182,4 +182,4 @@ TEST(Damaged, TextsAreRefusedAtAPlaceInTheFileOrReadBackTheSame) {
 }
 
 } // namespace
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace pneuma::pipeline::schema {
+namespace pneuma::pipeline::yaml {
 
 // Where something stands in a user's file (1-based), to be quoted in messages.
 struct Mark {
@@ -71,4 +71,4 @@ std::vector<std::pair<std::string, const Node*>> leaves(const Node& node);
 // Replaces the mark of each scalar (and of the map around it) whose path is in `marks`.
 void replace_marks(Node& node, const std::map<std::string, Mark>& marks);
 
-} // namespace pneuma::pipeline::schema
+} // namespace pneuma::pipeline::yaml
