@@ -37,8 +37,6 @@ enum class CompensatedBy : std::uint8_t { nothing, strain }; // strain: of the f
 struct GivenCompensation { // flat length = (1 - value) x length on the form
   double warp = 0, weft = 0;
 
-  bool operator==(const GivenCompensation&) const = default;
-
   template <class K>
   static void declare(K& keys) {
     keys("warp", &GivenCompensation::warp, ratio(), "along the roll");
@@ -86,7 +84,11 @@ struct PatternSettings {
 
   // The roll, or one as film is bought, which drawings are laid on where none is given.
   Roll roll_or_usual() const { return roll.value_or(Roll{1.55, 0.012, 0.01}); }
-  bool by_strain() const { return compensation == Compensation(CompensatedBy::strain); }
+  bool by_strain() const {
+    const auto* by = std::get_if<CompensatedBy>(&compensation);
+    return by != nullptr && *by == CompensatedBy::strain;
+  }
+  bool compensates() const { return by_strain() || std::holds_alternative<GivenCompensation>(compensation); }
 
   template <class K>
   static void declare(K& keys) {
@@ -139,7 +141,7 @@ struct PatternSettings {
     keys("decompensation", &Self::decompensation,
          quantity("m").at_least(0, "at least 0 m").usual(0, 2, "usually up to 2 m").such_as("0.3 m").otherwise("0 m"),
          "width along clamped edges where the compensation fades in")
-        .where([](const auto& pattern) { return pattern.compensation != Compensation(CompensatedBy::nothing); },
+        .where([](const auto& pattern) { return pattern.compensates(); },
                "is for `compensation: elastic` or {warp: ..., weft: ...}, which it lets fade in");
     keys("foils", &Self::foils, list(reference_to("foil").named("foil", "a foil")).items(1, 16),
          "to be cut; without it all that are not flat");

@@ -304,7 +304,7 @@ TEST(GoodWorkflow, PatternDefaultsAreThoseOfTheContract) {
   EXPECT_EQ(pattern.lines, CuttingLines::geodesic);
   EXPECT_FALSE(pattern.direction);
   EXPECT_EQ(pattern.chosen_by, ChosenBy::distortion);
-  EXPECT_EQ(pattern.compensation, Compensation(CompensatedBy::nothing));
+  EXPECT_FALSE(pattern.compensates());
   EXPECT_EQ(pattern.creep, 0);
   EXPECT_EQ(pattern.decompensation, 0);
   EXPECT_FALSE(pattern.foils);
