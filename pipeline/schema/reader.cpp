@@ -305,7 +305,8 @@ std::optional<std::size_t> Reader::alternative(const Option& option, const Node&
   return found;
 }
 
-void Reader::unknown_key(const Option& group, const Entry& entry, const std::string& path, const Option* variant) {
+std::string Reader::unknown_key(const Option& group, const Entry& entry, const std::string& path,
+                                const Option* variant) {
   std::vector<std::string> known = available_names(group.members());
   if (variant != nullptr) known.insert(known.begin(), variant->tag);
   std::string message = fmt::format("unknown key `{}` in {}{}; known: {}", entry.key, title(path),
@@ -318,45 +319,51 @@ void Reader::unknown_key(const Option& group, const Entry& entry, const std::str
     break;
   }
   fail(entry.mark, message);
+  return nearest(entry.key, known);
 }
 
-void Reader::report_missing(const Option& group, const Node& node, const std::string& path, bool& complete) {
+bool Reader::has_all(const Option& group, const Node& node, const std::string& path,
+                     const std::set<std::string>& meant) {
+  const auto is_present = [&](const std::string& key) { return find(node, key) != nullptr || meant.contains(key); };
+  bool complete = true;
   for (const Option& member : group.members()) {
-    if (!member.is_required || find(node, member.name) != nullptr || (member.is_internal && !is_stage_file_)) continue;
+    if (!member.is_required || is_present(member.name) || (member.is_internal && !is_stage_file_)) continue;
     fail(node.mark,
          fmt::format("{} lacks the key `{}`: {} ({})", title(path), member.name, member.text, expected(member)));
-    if (!member.defines.empty()) cannot_know(member.defines);
     complete = false;
   }
   for (const KeySet& set : group.alternatives) {
-    const auto is_present = [&](const std::string& key) { return find(node, key) != nullptr; };
     const auto present = static_cast<std::size_t>(std::count_if(set.keys.begin(), set.keys.end(), is_present));
     if (present >= set.least && present <= set.most) continue;
     fail(node.mark, fmt::format("{} needs {}; it has {}", title(path), wanted(set),
                                 present == 0 ? "none" : fmt::format("{}", present)));
     complete = false;
   }
+  return complete;
 }
 
 bool Reader::keys(const Option& group, const Node& node, const std::string& path, const Option* variant) {
   if (!fits(group, node, path)) return false;
   bool complete = true, has_unavailable = false;
+  std::set<std::string> meant; // keys that stand there misspelt
   for (const Entry& entry : node.entries) {
     note(below(path, entry.key), entry.value, &entry.mark);
     if (variant != nullptr && entry.key == variant->tag) continue;
     const auto member = std::find_if(group.members().begin(), group.members().end(),
                                      [&](const Option& o) { return o.name == entry.key; });
     if (member == group.members().end() || (member->is_internal && !is_stage_file_)) {
-      unknown_key(group, entry, path, variant);
+      meant.insert(unknown_key(group, entry, path, variant));
       complete = false;
     } else if (!member->not_yet.empty()) {
       complete = not_yet(entry.mark, fmt::format("`{}`", entry.key), member->not_yet);
       has_unavailable = true;
     }
   }
+  for (const Option& member : group.members()) {
+    if (!member.defines.empty() && find(node, member.name) == nullptr) cannot_know(member.defines);
+  }
   // a group that asks for something unavailable is not also told what else it lacks
-  if (!has_unavailable) report_missing(group, node, path, complete);
-  return complete;
+  return (has_unavailable || has_all(group, node, path, meant)) && complete;
 }
 
 } // namespace pneuma::pipeline::schema

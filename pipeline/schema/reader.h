@@ -107,8 +107,10 @@ private:
   void note(const std::string& path, const Node& node, const Mark* key, std::optional<std::size_t> position = {});
   const Place* nearest_place(std::string path) const;
   bool not_yet(const Mark& mark, const std::string& what, const std::string& instead);
-  void unknown_key(const Option& group, const Entry& entry, const std::string& path, const Option* variant);
-  void report_missing(const Option& group, const Node& node, const std::string& path, bool& complete);
+  // Returns the key that was meant; empty: none is near.
+  std::string unknown_key(const Option& group, const Entry& entry, const std::string& path, const Option* variant);
+  // `meant`: keys that stand there misspelt, which is told.
+  bool has_all(const Option& group, const Node& node, const std::string& path, const std::set<std::string>& meant);
 
   bool is_stage_file_, reads_default_ = false;
   std::deque<Node> trees_;

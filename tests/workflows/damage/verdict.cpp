@@ -71,7 +71,8 @@ const std::vector<Becomes>& becomes() {
       {std::regex(R"((stages\.[^.]+)\.(stress|prestress)(\..*)?)"), R"($1\.prestress(\..*)?)"},
       {std::regex(R"(cushion\.foils(\.[0-9]+(\.thickness)?)?)"), R"(stages\.[^.]+\.prestress(\..*)?)"},
       // a pressure and a gas for each air
-      {std::regex(R"(cushion\.chambers(\.[0-9]+(\.connected_to)?)?)"), R"(stages\.[^.]+\.(gas|gauge_pressure)(\..*)?)"},
+      {std::regex(R"(cushion\.chambers(\.[0-9]+(\.(connected_to|name))?)?)"),
+       R"(stages\.[^.]+\.(gas|gauge_pressure)(\..*)?)"},
       {std::regex(R"((stages\.[^.]+)\.(gas|gauge_pressure)\..*)"), R"($1\.$2(\..*)?)"}, // chambers that share it
       {std::regex(R"((stages\.[^.]+)\.from)"), R"($1\.from_run)"},
       // what chooses it, where it is searched
@@ -170,6 +171,11 @@ std::string wrong_refusal(const Damage& damage, const std::string& messages, con
     elsewhere = elsewhere || calls;
     calling += calls ? 1 : 0;
     named = named || (calls && holds_one(message.text, words));
+  }
+  // without `gravity: off` the weight asks for a density where the foil names its material
+  const bool needs_weight = damage.path == "site.gravity" || damage.path == "site";
+  for (const Message& message : found) {
+    if (needs_weight && message.text.find("which gravity needs") != std::string::npos) return "";
   }
   if (!at_place && !elsewhere) return "the message points elsewhere";
   if (!named) return "the message names neither key nor value";

@@ -107,6 +107,10 @@ TEST(Keys, ThatAreMissingUnknownOrNotAvailableAreTold) {
               ElementsAre(HasSubstr("l.yaml:2:1: unknown key `frist` in the file; did you mean `first`?")));
 }
 
+TEST(Keys, ThatAreRequiredAndMisspeltAreToldOnce) {
+  EXPECT_THAT(read("rugns: []\n").problems, ElementsAre(HasSubstr("did you mean `rungs`?")));
+}
+
 TEST(Keys, ThatMeanNothingWhereTheyStandAreRefusedThere) {
   EXPECT_THAT(read(good + "leans: off\nangle: 10 deg\n").problems,
               ElementsAre("l.yaml:3:1: `angle` is for a ladder that leans; leave it out"));
