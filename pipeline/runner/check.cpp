@@ -20,7 +20,6 @@
 namespace pneuma::pipeline::runner {
 
 using base::ExitCode;
-using workflow::Mark;
 using workflow::Workflow;
 
 namespace fs = std::filesystem;
@@ -44,7 +43,7 @@ public:
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   fs::path write(const std::string& name, const std::string& text) const {
-    const fs::path file = path_ / name;
+    fs::path file = path_ / name;
     if (!(std::ofstream(file) << text).flush()) refuse(std::strerror(errno));
     return file;
   }

@@ -87,7 +87,7 @@ private:
 };
 
 // The keys of a map that a T stands for: each with its form, its text and the member that it fills. A T declares them
-// in `template <class K> static void declare(K& keys)`; rules between them stand in `static void check(Reader&,
+// in `static void declare(auto& keys)`; rules between them stand in `static void check(Reader&,
 // At<T>)`, which sees complete values only. A member must be given unless it is a std::optional or its form has a
 // default.
 template <class T>

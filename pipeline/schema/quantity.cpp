@@ -324,7 +324,7 @@ std::vector<std::string> other_units(const std::string& name, std::size_t at) {
     if (folded(name) == aliases[i]) result.emplace_back(aliases[i + 1]);
   }
   if (at == std::string::npos) return result;
-  constexpr const char* joints = " @/*.,^+-(";
+  static constexpr const char* joints = " @/*.,^+-(";
   const auto without_joints = [&](std::string_view text) { return text.substr(0, text.find_last_not_of(joints) + 1); };
   std::string_view before = without_joints(std::string_view(name).substr(0, at));
   before.remove_suffix(operation_at_end(before));

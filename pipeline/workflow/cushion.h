@@ -14,8 +14,7 @@ struct Site {
   Vec3 up{0, 0, 0};                        // opposite to gravity, of length 1
   bool gravity = false;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     const auto pressure = mapped<base::AbsolutePressure>(
         quantity("Pa").at_least(0, "at least 0 Pa").such_as("101325 Pa").otherwise("101325 Pa"),
         [](double pascal) { return base::AbsolutePressure{pascal}; },
@@ -36,8 +35,7 @@ struct FoilSettings {
   double thickness = 0; // m
   double warp = 0;      // rad
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = FoilSettings;
     keys("name", &Self::name, name_of_a("foil", {all, "base"}), "of the foil");
     keys("material", &Self::material, reference_to("material"), "a name under `materials`");
@@ -54,8 +52,7 @@ struct ChamberSettings {
   double dead_volume = 0;                  // m3
   std::optional<std::string> connected_to; // chamber whose air it shares, which is not itself connected
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = ChamberSettings;
     keys("name", &Self::name, name_of_a("chamber"), "of the chamber");
     keys("between", &Self::between, tuple<2>(reference_to("foil", "base").named("wall", "a foil, or base")),
@@ -74,8 +71,7 @@ struct Cushion {
   bool rigid_base = false;
   std::vector<ChamberSettings> chambers;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     const char* shapes = "rectangle, circle, triangle and polygon are available";
     const char* clamped = "clamped edges are available";
     keys("plan", &Cushion::plan,

@@ -9,8 +9,7 @@ struct SolverOptions {
   std::optional<double> tolerance; // relative residual
   std::optional<int> max_iterations;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("tolerance", &SolverOptions::tolerance, number().within({0, 1, "between 0 and 1", false, false}),
          "relative residual at which an equilibrium is accepted");
     keys("max_iterations", &SolverOptions::max_iterations, integer().between(1, 1000000, "from 1 to 1000000"),
@@ -24,8 +23,7 @@ struct FormfindSettings {
   std::optional<std::map<std::string, double>> stress; // as the user may say it, Pa; turned into prestress
   SolverOptions options;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = FormfindSettings;
     const char* isotropic = "an isotropic prestress (or stress) per foil is available: {all: 0.89 kN/m}";
     keys("gauge_pressure", &Self::gauge_pressure, gauge_pressures(), "the pressure of the form");

@@ -12,8 +12,7 @@ struct InflateSettings : PathSettings {
   std::optional<Reference> reference;                     // required from a formfind stage
   std::optional<std::map<std::string, double>> prestress; // foil -> N/m; only from `mesh`; none: stress-free
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = InflateSettings;
     keys("gauge_pressure", &Self::gauge_pressure, gauge_pressures(), "reached with regulated air");
     keys("reference", &Self::reference,

@@ -24,8 +24,7 @@ struct ElasticLaw {
   double E = 0;  // Pa
   double nu = 0; // -
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("E", &ElasticLaw::E, youngs_modulus(), "Young's modulus").varies_with_temperature();
     keys("nu", &ElasticLaw::nu, poissons_ratio(), "Poisson's ratio").varies_with_temperature();
     keys.is("elastic", "St. Venant-Kirchhoff, isotropic (E, nu) or orthotropic (E1, E2, nu12, G12)");
@@ -38,8 +37,7 @@ struct OrthotropicLaw {
   double nu12 = 0;       // -
   double G12 = 0;        // Pa
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = OrthotropicLaw;
     keys("E1", &Self::E1, youngs_modulus(), "Young's modulus along the warp, of an orthotropic foil")
         .varies_with_temperature();
@@ -58,8 +56,7 @@ struct HardeningBranch {
   double stress = 0;
   double modulus = 0; // plastic or tangent, as the law says
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("stress", &HardeningBranch::stress,
          quantity("Pa").positive().usual(1e4, 1e9, "foils yield at 10 kPa to 1 GPa").such_as("15 MPa"),
          "yield stress from which on it counts");
@@ -75,8 +72,7 @@ struct ViscositySettings {
   double epsilon = 0;              // -
   std::optional<double> threshold; // Pa; none: first yield
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = ViscositySettings;
     keys("model", &Self::model,
          choice<Model>({{"peric", Model::peric, "stress = yield stress (1 + mu rate)^epsilon"},
@@ -100,8 +96,7 @@ struct J2Law {
   bool logarithmic = false; // large strain; otherwise small strain
   std::optional<ViscositySettings> viscosity;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("E", &J2Law::E, youngs_modulus(), "Young's modulus").varies_with_temperature();
     keys("nu", &J2Law::nu, poissons_ratio(), "Poisson's ratio").varies_with_temperature();
     keys("hardening", &J2Law::hardening, list(group<HardeningBranch>().named("branch", "a branch")).items(1, 1000),
@@ -131,8 +126,7 @@ struct OgdenLaw {
     double mu = 0;    // Pa
     double alpha = 0; // -
 
-    template <class K>
-    static void declare(K& keys) {
+    static void declare(auto& keys) {
       keys("mu", &Term::mu, quantity("Pa").such_as("630 kPa"),
            "of W = sum mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3)");
       keys("alpha", &Term::alpha, number(), "exponent of the stretches");
@@ -140,8 +134,7 @@ struct OgdenLaw {
   };
   std::vector<Term> terms;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("terms", &OgdenLaw::terms, list(group<Term>().named("term", "a term")).items(1, 8), "of the stored energy");
     keys.is("ogden", "incompressible, hyperelastic");
   }
@@ -151,15 +144,13 @@ struct OgdenLaw {
 struct MooneyRivlinLaw {
   double C1 = 0, C2 = 0; // Pa
 
-  template <class K>
-  static void declare_neo_hooke(K& keys) {
+  static void declare_neo_hooke(auto& keys) {
     keys("C1", &MooneyRivlinLaw::C1,
          quantity("Pa").positive().usual(1e4, 1e9, "rubber and foils have 10 kPa to 1 GPa").such_as("0.6 MPa"),
          "of W = C1 (I1 - 3) + C2 (I2 - 3); half the shear modulus without C2");
     keys.is("neo_hooke", "incompressible, hyperelastic: mooney_rivlin with C2 = 0");
   }
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     declare_neo_hooke(keys);
     keys("C2", &MooneyRivlinLaw::C2,
          quantity("Pa").at_least(0, "at least 0 Pa").usual(0, 1e9, "usually up to 1 GPa").such_as("0.1 MPa"), "of W");
@@ -191,8 +182,7 @@ struct TableLaw {
   std::optional<double> smoothing;            // weight of bends against residuals; none: as the fit chooses
   double nu = 0;                              // of the thickness, about which the points say nothing
 
-  template <class K>
-  static void declare(K& keys, Kind kind = Kind::le_nurbs) {
+  static void declare(auto& keys, Kind kind = Kind::le_nurbs) {
     const bool along_axes = kind == Kind::le_nurbs;
     const auto files = [] {
       const auto file = text().named("file", "CSV file beside the one that names it");
@@ -286,8 +276,7 @@ struct Strength {
     double at = 0; // K
     double factor = 0;
 
-    template <class K>
-    static void declare(K& keys) {
+    static void declare(auto& keys) {
       keys("at", &AtTemperature::at, quantity("K").positive(), "the temperature");
       keys("factor", &AtTemperature::factor, number().positive(), "of the strength there");
     }
@@ -298,8 +287,7 @@ struct Strength {
   std::vector<AtTemperature> temperature; // rising
   std::optional<std::string> source;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     const auto stress = quantity("Pa").positive().such_as("21 MPa");
     keys("characteristic", &Strength::characteristic, stress, "strength that design starts from");
     keys("weld", &Strength::weld, stress, "of a weld, at break");
@@ -331,8 +319,7 @@ struct Material {
   std::optional<std::string> source;
   std::map<std::string, Mark> places; // where the user has its values: "E", "hardening.1.modulus", "" for itself
 
-  template <class K>
-  static void declare(K& keys) { // what all laws have
+  static void declare(auto& keys) { // what all laws have
     keys("tension_field", &Material::tension_field, flag().otherwise("off"), "a foil that cannot carry compression");
     keys("density", &Material::density, quantity("kg/m3").positive().usual(100, 10000, "ETFE has 1750 kg/m3"),
          "for gravity");

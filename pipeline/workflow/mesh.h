@@ -16,8 +16,7 @@ struct MeshSettings {
   std::optional<MeshPattern> pattern;          // none: structured where the plan allows
   geometry::StressRule stress_rule = geometry::StressRule::full;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = MeshSettings;
     using geometry::ElementType;
     using geometry::StressRule;

@@ -9,16 +9,14 @@ namespace pneuma::pipeline::workflow {
 struct Steps {
   std::optional<int> steps; // output at n equal parts of the path, or of each stretch between two moments
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("steps", &Steps::steps, integer().between(1, 100000, "from 1 to 100000"),
          "output at n equal parts of the path");
   }
 };
 
 struct LoadControl : Steps {
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     Steps::declare(keys);
     keys.is("load", "the load grows; automatic steps");
   }
@@ -30,8 +28,7 @@ struct DisplacementControl : Steps {
   std::optional<Vec3> direction; // of the controlled displacement, unit length; none: the site's up
   double until = 0;              // m, not zero; its sign counts along the direction
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = DisplacementControl;
     keys("at", &Self::at,
          word_or("max", "the largest displacement of the foil", point().named("place", "a point of the foil, in plan"))
@@ -43,7 +40,7 @@ struct DisplacementControl : Steps {
         .where([](const auto& control) { return control.at.has_value(); },
                "is for a displacement at a place, not the largest (`at: max`)");
     keys("until", &Self::until,
-         quantity("m").judged([](double until) { return until != 0 ? "" : "must not be zero"; }).such_as("0.1 m"),
+         quantity("m").judged([](double end) { return end != 0 ? "" : "must not be zero"; }).such_as("0.1 m"),
          "the displacement in the end; its sign counts along the direction");
     Steps::declare(keys);
     keys.is("displacement", "a displacement grows, the load follows");
@@ -55,8 +52,7 @@ struct VolumeControl : Steps {
   std::string chamber;
   double until = 0; // m3
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("chamber", &VolumeControl::chamber, reference_to("chamber"), "where there are several").or_another();
     keys("until", &VolumeControl::until, quantity("m3").positive().such_as("5 m3"), "the volume in the end");
     Steps::declare(keys);
@@ -69,8 +65,7 @@ struct ArcTargets {
   std::optional<double> load_factor, pressure, volume, displacement; // -, Pa (gauge), m3, m
   std::optional<double> after_peak;                                  // the load fell to this part of its peak, 0 .. 1
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = ArcTargets;
     keys("load_factor", &Self::load_factor, number().positive(), "1: everything that the stage states");
     keys("pressure", &Self::pressure, quantity("Pa"), "gauge pressure of the chamber");
@@ -90,8 +85,7 @@ struct ArcLengthControl : Steps {
 
   bool needs_chamber() const { return until.pressure || until.volume; }
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = ArcLengthControl;
     keys("until", &Self::until, group<ArcTargets>(), "the path ends at the first that is reached");
     keys("chamber", &Self::chamber, reference_to("chamber"), "where there are several")
@@ -116,8 +110,7 @@ struct Moment {
   double time = 0; // s
   double factor = 0;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("time", &Moment::time, quantity("s").at_least(0, "at least 0 s"), "since the stage began");
     keys("factor", &Moment::factor, number(), "part of what the stage states that acts then");
   }
@@ -127,8 +120,7 @@ struct PathOptions : SolverOptions {
   std::optional<int> max_steps;
   double plastic_step = 0; // growth of the equivalent plastic strain in a step
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     SolverOptions::declare(keys);
     keys("max_steps", &PathOptions::max_steps, integer().between(1, 100000, "from 1 to 100000"),
          "after so many the path is given up; without it after 500, under load control as many as it takes");
@@ -144,8 +136,7 @@ struct PathSettings {
   std::vector<Moment> history; // of load control, from nothing at 0 s, linear between; empty: no time passes
   PathOptions options;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = PathSettings;
     keys("contact", &Self::contact_stops,
          choice<bool>({{"stop", true, "ends the stage"}, {"ignore", false, "goes on, marked"}}).otherwise("stop"),

@@ -18,8 +18,7 @@ struct Roll {
   double weld = 0;     // width of the overlap
   double selvedge = 0; // not used along both edges
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("width", &Roll::width, quantity("m").positive().usual(0.5, 3, "rolls are 0.5 to 3 m wide").such_as("1.55 m"),
          "of the film as bought");
     keys("weld", &Roll::weld,
@@ -37,8 +36,7 @@ enum class CompensatedBy : std::uint8_t { nothing, strain }; // strain: of the f
 struct GivenCompensation { // flat length = (1 - value) x length on the form
   double warp = 0, weft = 0;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("warp", &GivenCompensation::warp, ratio(), "along the roll");
     keys("weft", &GivenCompensation::weft, ratio(), "across the roll");
   }
@@ -50,8 +48,7 @@ struct Allowance {
   double clamp = 0;   // m, of film beyond the clamped edge
   double notches = 0; // m, distance of the marks along the seams
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("clamp", &Allowance::clamp,
          quantity("m")
              .at_least(0, "at least 0 m")
@@ -90,8 +87,7 @@ struct PatternSettings {
   }
   bool compensates() const { return by_strain() || std::holds_alternative<GivenCompensation>(compensation); }
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = PatternSettings;
     const auto searches = [](const auto& pattern) { return pattern.curves.empty(); };
     const char* beside_curves = "has no effect beside `curves`, which are the seams themselves";

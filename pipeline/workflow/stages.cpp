@@ -110,8 +110,14 @@ namespace {
 // {FOIL or all: ...} says something about every foil.
 template <class V>
 void check_foils(Reader& reader, const std::map<std::string, V>& table, const std::string& path) {
-  if (table.empty() || table.contains(all) || !reader.knows("foil")) return;
-  for (const std::string& foil : reader.names("foil")) {
+  const std::vector<std::string>& foils = reader.names("foil");
+  const auto is_stranger = [&](const auto& entry) { // which is told, and perhaps one of them was meant
+    return std::find(foils.begin(), foils.end(), entry.first) == foils.end();
+  };
+  if (table.empty() || table.contains(all) || !reader.knows("foil") ||
+      std::any_of(table.begin(), table.end(), is_stranger))
+    return;
+  for (const std::string& foil : foils) {
     if (table.contains(foil)) continue;
     reader.fail(path,
                 fmt::format("{} says nothing about the foil `{}`; name it, or use `all`", reader.title(path), foil));

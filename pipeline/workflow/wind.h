@@ -8,8 +8,7 @@ namespace pneuma::pipeline::workflow {
 struct RegulatedGas {
   std::optional<double> gauge_pressure; // Pa; none: as in the `from` state
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("gauge_pressure", &RegulatedGas::gauge_pressure,
          quantity("Pa").usual(0, 2000, "cushions hold 200 to 800 Pa, seldom up to 2 kPa"),
          "set-point; without it as in the `from` state");
@@ -22,8 +21,7 @@ struct ClosedGas {
   std::optional<double> temperature;      // K, at the end; none: as in the `from` state
   std::optional<double> ambient_pressure; // Pa absolute, at the end; none: as in the `from` state
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("kappa", &ClosedGas::kappa,
          number().within({0, 10, "above 0, up to 10", false, true}).usual(1, 1.67, "air has 1 to 1.4").otherwise("1"),
          "of p V^kappa = const: 1 slow, 1.4 gusts of seconds");
@@ -39,8 +37,7 @@ struct ClosedGas {
 struct VolumeGas {
   double volume = 0; // m3
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("volume", &VolumeGas::volume, quantity("m3").positive().such_as("5 m3"), "held");
     keys.is("volume", "incompressible");
   }
@@ -53,8 +50,7 @@ struct Region {
   std::optional<std::array<double, 2>> x, y; // m
   std::optional<std::vector<Vec2>> polygon;  // m
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     const auto interval = tuple<2>(quantity("m").such_as("1.5 m").named("end", "coordinate in plan"))
                               .judged([](const std::array<double, 2>& ends) {
                                 return ends[0] < ends[1] ? "" : "must rise: the first end must be below the second";
@@ -78,8 +74,7 @@ struct PatchLoad {               // a dead force spread over a rectangle in plan
   Vec2 center{0, 0}, size{0, 0}; // m
   Vec3 force{0, 0, 0};           // N
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("center", &PatchLoad::center, point(), "in plan");
     keys("size", &PatchLoad::size, schema::vector<Vec2>(length().named("side", "side of the rectangle")), "in plan");
     keys("force", &PatchLoad::force, schema::vector<Vec3>(quantity("N").named("component", "component")), "sum, dead");
@@ -91,8 +86,7 @@ struct Load {
   std::variant<WindLoad, SnowLoad, PatchLoad> kind;
   std::optional<Region> region; // none: all of the foil
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("name", &Load::name, word(), "of the load");
     keys("foil", &Load::foil, reference_to("foil"), "it acts on");
     keys.computed(
@@ -131,8 +125,7 @@ struct WindSettings : PathSettings {
   // Of every own load, and of those that the `from` stage ends with: what they go to; others stay.
   std::map<std::string, double> factors;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     using Self = WindSettings;
     keys("gas", &Self::gas,
          table(schema::variant<Gas>("law").otherwise("regulated").named("CHAMBER", "the air of a chamber"), "chamber")

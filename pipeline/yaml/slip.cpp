@@ -201,9 +201,10 @@ Slip of_value(std::string_view text, std::size_t at) {
 Slip of_block(std::string_view text, std::size_t at) {
   const bool first = content_of_line(text, at) == at || text[at] == '-';
   if (text[at] == ':') return {at, "a blank is missing after this `:`"};
-  if (!first)
+  if (!first) {
     return {at,
             fmt::format("`{}` cannot follow here; is a line break or a comma missing before it?", word_at(text, at))};
+  }
   if (const std::string words = text[at] == '-' ? "" : without_colon(words_of_line(text, at)); !words.empty()) {
     return {at, words};
   }
@@ -221,7 +222,7 @@ Slip of_mark(std::string_view text, std::size_t at, const std::string& complaint
   }
   if (is(msg::INVALID_ESCAPE) || is(msg::INVALID_HEX) || is(msg::INVALID_UNICODE)) {
     return {std::min(at, text.rfind('\\', at)),
-            "in double quotes `\\` begins a special character; write `\\\\`, or use single quotes"};
+            R"(in double quotes `\` begins a special character; write `\\`, or use single quotes)"};
   }
   if (is(msg::CHAR_IN_BLOCK) || is(msg::ZERO_INDENT_IN_BLOCK)) {
     return {at, "`|` and `>` begin a block of text on the lines below; put a text that begins so in quotes"};

@@ -105,7 +105,7 @@ private:
     last_quoted = byte(mark);
     for (std::size_t at = 0; at < text.size();) {
       const Character character = character_at(text, at);
-      if (!character.valid) throw Refusal{mark, "`\\N` and `\\_` are not known in quotes; write `\\x85` and `\\xa0`"};
+      if (!character.valid) throw Refusal{mark, R"(`\N` and `\_` are not known in quotes; write `\x85` and `\xa0`)"};
       at += character.size;
     }
   }
@@ -344,7 +344,7 @@ std::optional<Problem> unfit(const std::string& text, const std::string& name) {
 Node parse_yaml(const std::string& text, const std::string& name, std::vector<Problem>& problems) {
   if (text.starts_with("\xEF\xBB\xBF")) return parse_yaml(text.substr(3), name, problems);
   const Mark begin{name, 1, 1};
-  const Node nothing{NodeKind::null, begin, "", {}, {}};
+  Node nothing{NodeKind::null, begin, "", {}, {}};
   if (const auto problem = unfit(text, name)) {
     problems.push_back(*problem);
     return nothing;

@@ -77,6 +77,8 @@ const std::vector<Becomes>& becomes() {
       {std::regex(R"((stages\.[^.]+)\.from)"), R"($1\.from_run)"},
       // what chooses it, where it is searched
       {std::regex(R"((stages\.[^.]+)\.direction)"), R"($1\.chosen_by)"},
+      // what goes with it
+      {std::regex(R"((stages\.[^.]+)\.compensation(\..*)?)"), R"($1\.(creep|decompensation))"},
       // a factor for each load
       {std::regex(R"((stages\.[^.]+)\.loads(\.[0-9]+(\.name)?)?)"), R"($1\.factors(\..*)?)"},
       // the names of the edges

@@ -14,8 +14,7 @@ using testing::IsEmpty;
 struct Foot {
   double width = 0; // m
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("width", &Foot::width, quantity("m").positive().such_as("5 cm"), "of a foot");
   }
 };
@@ -25,8 +24,7 @@ struct Rung {
   double height = 0; // m
   std::optional<double> width;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("name", &Rung::name, name_of_a("rung"), "of the rung");
     keys("height", &Rung::height, quantity("m").positive().usual(0.1, 10, "usually 10 cm to 10 m"), "above the ground");
     keys("width", &Rung::width, quantity("m").positive(), "of the rung");
@@ -40,8 +38,7 @@ struct Ladder {
   std::optional<double> angle; // rad
   std::optional<Foot> feet;
 
-  template <class K>
-  static void declare(K& keys) {
+  static void declare(auto& keys) {
     keys("rungs", &Ladder::rungs, list(group<Rung>()).items(2, 100), "from below");
     keys("first", &Ladder::first, reference_to("rung"), "to step on");
     keys("leans", &Ladder::leans, flag().otherwise("on"), "against a wall");
