@@ -34,15 +34,8 @@ std::string fit_of(const Materials& materials, const std::string& name) {
 
 } // namespace
 
-void read_materials(Reader& reader, const yaml::Node& node, Materials& out) {
-  static const Form<Materials> form = table(material());
-  for (const yaml::Entry& entry : node.entries) reader.define("material", entry.key, entry.mark);
-  Materials read;
-  form.read(reader, node, "materials", read);
-  for (auto& [name, one] : read) {
-    one.name = name;
-    out.emplace(name, std::move(one));
-  }
+void define_materials(Reader& reader, const yaml::Node& map) {
+  for (const yaml::Entry& entry : map.entries) reader.define("material", entry.key, entry.mark);
 }
 
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out) {
@@ -52,9 +45,15 @@ void read_materials_file(Reader& reader, const std::filesystem::path& file, cons
   yaml::drop_templates(parsed);
   const yaml::Node& tree = reader.keep(std::move(parsed));
   if (reader.problems.size() > before && tree.kind == NodeKind::null) return reader.cannot_know("material");
-  if (tree.kind == NodeKind::map) return read_materials(reader, tree, out);
-  reader.cannot_know("material");
-  reader.fail(tree.mark, "a file of materials is a map: NAME: {law: elastic, E: 900 MPa, nu: 0.45}");
+  if (tree.kind != NodeKind::map) {
+    reader.cannot_know("material");
+    return reader.fail(tree.mark, "a file of materials is a map: NAME: {law: elastic, E: 900 MPa, nu: 0.45}");
+  }
+  define_materials(reader, tree);
+  static const Form<Materials> form = table(material());
+  Materials read;
+  form.read(reader, tree, "materials", read);
+  out.merge(read);
 }
 
 void check_fits(Reader& reader, const Materials& materials) {

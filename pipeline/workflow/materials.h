@@ -11,10 +11,10 @@ namespace pneuma::pipeline::workflow {
 
 using Materials = std::map<std::string, Material>;
 
-// The materials of a map of them; every name is defined, those without fault are read.
-void read_materials(Reader& reader, const yaml::Node& node, Materials& out);
+// Every name of a map of materials is defined, those with faults too.
+void define_materials(Reader& reader, const yaml::Node& map);
 
-// The same of a file, which is named at a place.
+// Reads the materials of a file, which is named at a place: those without fault.
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out);
 
 // What tables are fitted to exists, has no rate and no axes of its own, and does not go in a circle.

@@ -147,15 +147,15 @@ void read_materials_of(Reader& reader, File& file, const Node& tree, Workflow& o
   if (node == nullptr || (node->kind != NodeKind::map && !reader.is_whole("materials"))) {
     reader.cannot_know("material");
   } else if (node->kind == NodeKind::map) {
-    for (const yaml::Entry& entry : node->entries) reader.define("material", entry.key, entry.mark);
+    define_materials(reader, *node);
     if (auto* in_place = std::get_if<Materials>(&file.materials)) out.materials = std::move(*in_place);
-    for (auto& [name, material] : out.materials) material.name = name;
   } else {
     const auto read = [&](const std::string& path, const Node& named) {
       read_materials_file(reader, (out.file.parent_path() / path).lexically_normal(), named.mark, out.materials);
     };
     for (std::size_t i = 0; i < files->size(); ++i) read((*files)[i], node->items.empty() ? *node : node->items[i]);
   }
+  for (auto& [name, material] : out.materials) material.name = name;
   check_fits(reader, out.materials);
   std::vector<std::string> of_foils;
   for (const FoilSettings& foil : out.cushion.foils) of_foils.push_back(foil.material);
@@ -284,6 +284,7 @@ MaterialsResult read_materials(const std::filesystem::path& file, const std::vec
   Reader reader;
   MaterialsResult result;
   read_materials_file(reader, file, {file.generic_string(), 1, 1}, result.known);
+  for (auto& [name, material] : result.known) material.name = name;
   check_fits(reader, result.known);
   reader.check_references();
   result.names = reader.names("material");
