@@ -16,6 +16,7 @@ enum class ExitCode : int {
   bad_state = 3,
   impossible_geometry = 4,
   no_equilibrium = 5,
+  machine_refuses = 6,
   interrupted = 130,
 };
 
@@ -42,6 +43,11 @@ struct StateError : Error {
 // The shapes asked for cannot be meshed or enclosed.
 struct GeometryError : Error {
   explicit GeometryError(const std::string& message) : Error(ExitCode::impossible_geometry, message) {}
+};
+
+// Disk, permission, memory or a missing program; says what was tried and what to do.
+struct MachineError : Error {
+  explicit MachineError(const std::string& message) : Error(ExitCode::machine_refuses, message) {}
 };
 
 // Runs `body`; prints what went wrong to standard error and returns the exit code. The boundary of every program.

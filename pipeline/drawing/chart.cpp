@@ -11,7 +11,7 @@
 
 #include "pipeline/drawing/drawing.h"
 #include "pipeline/drawing/xml.h"
-#include "pipeline/state/whole_file.h"
+#include "pipeline/files/file.h"
 
 namespace pneuma::pipeline::drawing {
 
@@ -327,7 +327,7 @@ void write_chart(const Chart& chart, const std::filesystem::path& file) {
   write_curves(chart, x, y, out);
   write_legend(chart, x.end + 1.5 * gap, y.end, out);
   out += "</svg>\n";
-  state::PendingFile(file, out).publish();
+  files::write_file(file, out);
 }
 
 } // namespace pneuma::pipeline::drawing

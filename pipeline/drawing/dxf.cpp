@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/drawing/drawing.h"
-#include "pipeline/state/whole_file.h"
+#include "pipeline/files/file.h"
 
 namespace pneuma::pipeline::drawing {
 
@@ -167,7 +167,7 @@ void write_dxf(const Drawing& drawing, const std::filesystem::path& file) {
   for (const Text& text : drawing.texts) write_text(text, out);
   out.text(0, "ENDSEC");
   out.text(0, "EOF");
-  state::PendingFile(file, out.bytes()).publish();
+  files::write_file(file, out.bytes());
 }
 
 } // namespace pneuma::pipeline::drawing

@@ -7,7 +7,7 @@
 
 #include "pipeline/drawing/drawing.h"
 #include "pipeline/drawing/xml.h"
-#include "pipeline/state/whole_file.h"
+#include "pipeline/files/file.h"
 
 namespace pneuma::pipeline::drawing {
 
@@ -76,7 +76,7 @@ void write_svg(const Drawing& drawing, const std::filesystem::path& file) {
                  page.maxCoeff() / 3000);
   for (const Layer& layer : drawing.layers) write_layer(drawing, layer, out);
   out += "</g>\n</svg>\n";
-  state::PendingFile(file, out).publish();
+  files::write_file(file, out);
 }
 
 } // namespace pneuma::pipeline::drawing

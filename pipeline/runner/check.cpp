@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -15,6 +14,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/files/file.h"
 #include "pipeline/runner/process.h"
 
 namespace pneuma::pipeline::runner {
@@ -44,14 +44,14 @@ public:
 
   fs::path write(const std::string& name, const std::string& text) const {
     fs::path file = path_ / name;
-    if (!(std::ofstream(file) << text).flush()) refuse(std::strerror(errno));
+    files::write_file(file, text);
     return file;
   }
 
 private:
   [[noreturn]] static void refuse(const std::string& why) {
-    throw base::InputError(
-        fmt::format("no temporary file can be written: {}; let TMPDIR name a folder that has space", why));
+    throw base::MachineError(
+        fmt::format("no temporary folder can be made: {}; let TMPDIR name a folder that has space", why));
   }
 
   fs::path path_;
@@ -107,11 +107,8 @@ void check_by_stages(const Workflow& workflow, MeshCheck mesh) {
   for (const workflow::StageSettings& stage : told.stages) {
     if ((stage.run == "mesh" && mesh == MeshCheck::left_out) || !kinds.insert(stage.run).second) continue;
     const fs::path program = program_folder() / ("pneuma-" + stage.run);
-    if (access(program.c_str(), X_OK) != 0) {
-      base::warn(fmt::format("the program `{}` is not there: {} stages are not available in this build",
-                             program.string(), stage.run));
-      continue;
-    }
+    if (mesh == MeshCheck::left_out && !is_program(program)) continue; // the stage itself will say so
+    check_program(program);
     const fs::path config = folder.write(stage.run + ".yaml", workflow::stage_yaml(told, stage));
     asked.emplace_back(program.filename().string(), start(program, {"--check", "--config", config.string()}));
   }

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
@@ -21,8 +20,8 @@ using base::ExitCode;
 using base::say;
 
 const std::vector<std::string> own_words = {"run", "check", "status", "schema", "keys"};
-const std::vector<std::string> program_words = {"picture", "audit", "material"};
-const std::vector<std::string> later_words = {"study", "report"};
+const std::vector<std::string> program_words = {"picture", "material"};
+const std::vector<std::string> later_words = {"study", "report", "audit"};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -60,10 +59,7 @@ void check(const std::string& file) {
 // A program of its own beside this one.
 int forward(const std::string& word, const std::vector<std::string>& rest) {
   const auto program = runner::program_folder() / ("pneuma-" + word);
-  if (access(program.c_str(), X_OK) != 0) {
-    throw base::InputError(
-        fmt::format("`pneuma {}` is not available in this build: `{}` is not there", word, program.string()));
-  }
+  check_program(program);
   runner::become(program, rest);
   return static_cast<int>(ExitCode::bug);
 }

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "geometry/base/errors.h"
+#include "pipeline/files/file.h"
 
 namespace pneuma::pipeline::runner {
 
@@ -25,6 +26,9 @@ sigset_t interrupting() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP); // nohup: goes on without its terminal
   return set;
 }
 
@@ -37,7 +41,7 @@ std::vector<char*> argument_pointers(std::vector<std::string>& words) {
 }
 
 [[noreturn]] void throw_system(const std::string& what) {
-  throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+  throw base::MachineError(fmt::format("{}: {}; close other programs, or see to it", what, std::strerror(errno)));
 }
 
 } // namespace
@@ -61,6 +65,7 @@ Child start(const std::filesystem::path& program, const std::vector<std::string>
     signal(SIGTERM, SIG_DFL);
     const sigset_t set = interrupting();
     sigprocmask(SIG_UNBLOCK, &set, nullptr);
+    setenv("OPENBLAS_NUM_THREADS", "1", 1); // its threads would only wait, and reserve memory
     dup2(nothing, STDIN_FILENO);
     dup2(ends[1], STDOUT_FILENO);
     dup2(ends[1], STDERR_FILENO);
@@ -72,6 +77,17 @@ Child start(const std::filesystem::path& program, const std::vector<std::string>
   close(ends[1]);
   if (nothing >= 0) close(nothing);
   return {pid, ends[0]};
+}
+
+bool is_program(const std::filesystem::path& file) {
+  return access(file.c_str(), X_OK) == 0;
+}
+
+void check_program(const std::filesystem::path& program) {
+  if (is_program(program)) return;
+  throw base::MachineError(fmt::format("the program `{}` cannot be run: {}; build it with ./pipeline/run, or let "
+                                       "PNEUMA_STAGES name the folder that has it",
+                                       program.string(), std::strerror(errno)));
 }
 
 void send_signal(const Child& child, int number) {
@@ -106,14 +122,11 @@ int Interrupts::take() const {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / ".lock";
-  descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) {
-    throw geometry::base::InputError(fmt::format("`{}` cannot be written: {}; choose another folder with --out",
-                                                 folder.string(), std::strerror(errno)));
-  }
+  descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (descriptor_ < 0) files::refuse(file, "cannot be written", errno);
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     close(descriptor_);
-    throw geometry::base::InputError(fmt::format(
+    throw base::InputError(fmt::format(
         "another pneuma works in `{}`; wait for it to end, or choose another folder with --out", folder.string()));
   }
 }

@@ -20,10 +20,15 @@ Child start(const std::filesystem::path& program, const std::vector<std::string>
 // Sends a signal to the child and all it started.
 void send_signal(const Child& child, int number);
 
+bool is_program(const std::filesystem::path& file);
+
+// Throws MachineError where a program cannot be run: what is missing and what to do.
+void check_program(const std::filesystem::path& program);
+
 // Waits for the end: the exit code, or 128 + the number of the signal that ended it.
 int wait_for(const Child& child);
 
-// While it lives, SIGINT and SIGTERM do not end this process but can be read from `descriptor`.
+// While it lives, SIGINT, SIGTERM and SIGHUP do not end this process but can be read from `descriptor`.
 class Interrupts {
 public:
   Interrupts();

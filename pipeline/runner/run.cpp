@@ -5,10 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
-#include <fstream>
-#include <map>
-#include <set>
+#include <memory>
 #include <thread>
 
 #include <fmt/format.h>
@@ -18,6 +15,7 @@
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
 #include "pipeline/digest/digest.h"
+#include "pipeline/files/file.h"
 #include "pipeline/runner/freshness.h"
 #include "pipeline/runner/process.h"
 #include "pipeline/schema/spelling.h"
@@ -31,7 +29,10 @@ using workflow::Workflow;
 namespace fs = std::filesystem;
 
 fs::path output_folder(const Workflow& workflow, const fs::path& out) {
-  return out.empty() ? workflow.file.parent_path() / "out" / workflow.file.stem() : out;
+  if (!out.empty()) return out;
+  // W.yml must not share the folder of W.yaml
+  const bool is_usual = workflow.file.extension() == ".yaml";
+  return workflow.file.parent_path() / "out" / (is_usual ? workflow.file.stem() : workflow.file.filename());
 }
 
 namespace {
@@ -55,12 +56,17 @@ struct Job {
   Provenance made_from;
   Child child;
   std::string unfinished_line;
-  std::ofstream log;
+  std::unique_ptr<files::GrowingFile> log; // none: not running, or it cannot be written
   Clock::time_point start;
 };
 
 fs::path program_of(const StageSettings& stage) {
   return program_folder() / ("pneuma-" + stage.run);
+}
+
+bool is_interruption(int code) {
+  return code == 128 + SIGINT || code == 128 + SIGTERM || code == 128 + SIGHUP || code == 128 + SIGKILL ||
+         code == static_cast<int>(ExitCode::interrupted);
 }
 
 class Runner {
@@ -75,12 +81,7 @@ public:
 
   int run() {
     const fs::path out = output_folder(workflow_, options_.out);
-    std::error_code failure;
-    fs::create_directories(out, failure);
-    if (failure) {
-      throw base::InputError(
-          fmt::format("`{}` cannot be made: {}; choose another folder with --out", out.string(), failure.message()));
-    }
+    files::make_folder(out, files::Links::followed);
     const FolderLock lock(out);
     const Interrupts interrupts;
     if (isatty(STDOUT_FILENO) == 1) base::Progress::expect_in_pipes();
@@ -132,7 +133,7 @@ private:
     Job& input = job(one.from);
     input.state = good_state(input.files);
     const std::optional<Provenance> made = read_provenance(input.files.provenance);
-    if (input.state.empty() || !made || made->state != input.state) {
+    if (input.state.empty() || !made || made->state() != input.state) {
       throw base::StateError(fmt::format(
           "{}: the state it starts from, `{}`, is missing, damaged or unfinished; run `{}` first, or leave --only away",
           one.stage->id, input.files.state.string(), one.from));
@@ -181,40 +182,42 @@ private:
           one.progress = Progress::left_out;
           changed = true;
         } else if (before == Progress::done && running() < side_by_side_) {
-          begin(one);
+          unless_refused(one, [&] { begin(one); });
           changed = true;
         }
       }
     }
   }
 
+  // What the machine refuses to one stage stops neither its siblings nor the runner.
+  template <class Work>
+  void unless_refused(Job& one, const Work& work) {
+    try {
+      work();
+    } catch (const base::Error& error) {
+      fail(one, static_cast<int>(error.code()), error.what());
+    }
+  }
+
   void begin(Job& one) {
     const fs::path program = program_of(*one.stage);
-    if (access(program.c_str(), X_OK) != 0) {
-      return fail(one, static_cast<int>(ExitCode::bad_input),
-                  fmt::format("the program `{}` is not there: {} stages are not available in this build",
-                              program.string(), one.stage->run));
-    }
+    check_program(program);
     one.made_from = wanted(one, one.from.empty() ? "" : job(one.from).state);
     const std::string config = workflow::stage_yaml(workflow_, *one.stage);
     const Verdict verdict = examine(one.files, one.made_from, config);
     if (verdict.fresh && !one.anew) {
-      one.state = good_state(one.files);
+      one.state = read_provenance(one.files.provenance)->state();
       one.progress = Progress::done;
       // lines of the user's file may have moved
       std::vector<yaml::Problem> ignored;
-      if (yaml::read_text(one.files.config, {}, ignored) != config) std::ofstream(one.files.config) << config;
+      if (yaml::read_text(one.files.config, {}, ignored) != config) files::write_file(one.files.config, config);
       return say(fmt::format("{}: up to date", one.stage->id));
     }
     say(fmt::format("{}: runs: {}", one.stage->id, verdict.fresh ? "asked for" : verdict.reason));
-    std::error_code ignored;
-    fs::create_directories(one.files.folder, ignored);
-    fs::remove(one.files.provenance, ignored);
-    if (!(std::ofstream(one.files.config) << config).flush()) {
-      return fail(one, static_cast<int>(ExitCode::bug),
-                  fmt::format("`{}` cannot be written: {}", one.files.config.string(), std::strerror(errno)));
-    }
-    one.log = std::ofstream(one.files.log);
+    files::make_folder(one.files.folder);
+    remove_results(one.files);
+    files::write_file(one.files.config, config);
+    one.log = std::make_unique<files::GrowingFile>(one.files.log);
     std::vector<std::string> arguments = {"--config", one.files.config.string()};
     if (!one.from.empty()) arguments.insert(arguments.end(), {"--in", job(one.from).files.state.string()});
     arguments.insert(arguments.end(), {"--out", one.files.state.string(), "--threads", std::to_string(threads_)});
@@ -275,8 +278,18 @@ private:
       progress_line_.show(fmt::format("{}: {}", one.stage->id, line.substr(1)));
       return;
     }
-    one.log << line << std::endl;
+    log(one, line);
     say(fmt::format("{}: {}", one.stage->id, line));
+  }
+
+  void log(Job& one, const std::string& line) {
+    if (one.log == nullptr) return;
+    try {
+      one.log->add(line + "\n");
+    } catch (const base::MachineError& error) {
+      one.log.reset();
+      say(fmt::format("{}: its log ends here: {}", one.stage->id, error.what()));
+    }
   }
 
   // One line of the runner, below what it has said so far.
@@ -290,21 +303,28 @@ private:
     if (!one.unfinished_line.empty()) tell(one, one.unfinished_line);
     one.unfinished_line.clear();
     const int code = wait_for(one.child);
-    if (interrupted_ != 0 && (code == 128 + SIGINT || code == 128 + SIGTERM || code == 128 + SIGKILL)) {
+    one.log.reset();
+    if (interrupted_ != 0 && is_interruption(code)) {
       one.progress = Progress::failed;
       return say(fmt::format("{}: interrupted", one.stage->id));
     }
     if (code > 128) return fail(one, static_cast<int>(ExitCode::bug), fmt::format("ended by signal {}", code - 128));
-    if (code == 127) return fail(one, static_cast<int>(ExitCode::bug), "its program could not be started");
-    if (code != 0) {
-      return fail(one, code, fmt::format("exit code {}; its output is in {}", code, one.files.log.string()));
-    }
-    one.made_from.state = good_state(one.files);
-    if (one.made_from.state.empty()) {
+    if (code == 127) return fail(one, static_cast<int>(ExitCode::machine_refuses), "its program could not be started");
+    unless_refused(one, [&] { conclude(one, code); });
+  }
+
+  void conclude(Job& one, int code) {
+    one.made_from.outputs = digests_of_outputs(one.files);
+    one.made_from.exit_code = code;
+    one.made_from.verdict = verdict_in(one.files.summary);
+    if (code == 0 && good_state(one.files).empty()) {
       return fail(one, static_cast<int>(ExitCode::bug), "it ended well but left no state that matches its digest");
     }
     write_provenance(one.files.provenance, one.made_from);
-    one.state = one.made_from.state;
+    if (code != 0) {
+      return fail(one, code, fmt::format("exit code {}; its output is in {}", code, one.files.log.string()));
+    }
+    one.state = one.made_from.state();
     one.progress = Progress::done;
     const double seconds = std::chrono::duration<double>(Clock::now() - one.start).count();
     say(fmt::format("{}: done in {:.1f} s", one.stage->id, seconds));

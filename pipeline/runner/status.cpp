@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "geometry/base/log.h"
 #include "pipeline/digest/digest.h"
@@ -84,7 +83,7 @@ Verdict verdict_of(const Workflow& workflow, const StageSettings& stage, const S
                    const std::filesystem::path& out, const std::map<std::string, bool>& fresh) {
   if (!stage.from.empty() && !fresh.at(stage.from)) return {false, fmt::format("`{}` is stale", stage.from)};
   const auto program = program_folder() / ("pneuma-" + stage.run);
-  if (access(program.c_str(), X_OK) != 0) return {false, fmt::format("its program pneuma-{} is not there", stage.run)};
+  if (!is_program(program)) return {false, fmt::format("its program pneuma-{} is not there", stage.run)};
   Provenance wanted;
   wanted.settings = digest::sha256_of_text(workflow::effective_settings(workflow, stage));
   if (!stage.from.empty()) wanted.input = good_state(StageFiles(out / stage.from));

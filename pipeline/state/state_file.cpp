@@ -8,11 +8,11 @@
 
 #include "geometry/base/errors.h"
 #include "pipeline/digest/digest.h"
+#include "pipeline/files/file.h"
 #include "pipeline/state/check.h"
 #include "pipeline/state/hdf5.h"
 #include "pipeline/state/layout.h"
 #include "pipeline/state/trial.h"
-#include "pipeline/state/whole_file.h"
 
 namespace pneuma::pipeline::state {
 
@@ -52,7 +52,7 @@ bool is_there(const fs::path& path) {
 // A digest beside the file that says something else: damaged since, or killed between digest and state.
 void verify_digest(const fs::path& path, const std::string& bytes) {
   constexpr std::size_t digits = 64;
-  const std::string said = read_whole(digest_path(path)).substr(0, digits);
+  const std::string said = files::read_whole(digest_path(path)).substr(0, digits);
   if (said != digest::sha256_of_text(bytes)) {
     refuse(path, "does not match its digest " + digest_path(path).filename().string() +
                      ": damaged, or its stage did not finish");
@@ -66,7 +66,6 @@ void try_first(const fs::path& path, const std::string& bytes) {
   const auto seconds = static_cast<unsigned>(5 + bytes.size() / bytes_per_second);
   const std::string fault = try_in_child([&] { from_bytes(bytes); }, seconds, room + 8 * bytes.size());
   if (!fault.empty()) refuse(path, "is damaged or no state of Pneuma: " + fault);
-  if (!is_sealed(bytes)) refuse(path, "is damaged: its content is not what its stage wrote");
 }
 
 } // namespace
@@ -89,15 +88,20 @@ void write_state(const State& state, const fs::path& path) {
     throw base::StateError(fmt::format("{}: is a folder, not a file", path.string()));
   // the line of sha256sum, so that `sha256sum -c` checks it
   const std::string line = digest::sha256_of_text(bytes) + "  " + path.filename().string() + "\n";
-  PendingFile pending_digest(digest_path(path), line);
-  PendingFile pending_state(path, bytes);
+  files::PendingFile pending_digest(digest_path(path), line);
+  files::PendingFile pending_state(path, bytes);
   pending_digest.publish();
   pending_state.publish();
 }
 
+void write_state(const State& state, files::Outputs& outputs, const std::string& name) {
+  outputs.file(name + ".sha256");
+  write_state(state, outputs.file(name));
+}
+
 State read_state(const fs::path& path) {
   if (!is_there(path)) refuse(path, "does not exist");
-  const std::string bytes = read_whole(path);
+  const std::string bytes = files::read_whole(path);
   if (!bytes.starts_with("\x89HDF\r\n\x1a\n")) {
     throw base::StateError(fmt::format(
         "{}: is not a state file (it is no HDF5 file); give the .hdf file that a stage wrote", path.string()));
@@ -107,6 +111,7 @@ State read_state(const fs::path& path) {
   } else {
     try_first(path, bytes);
   }
+  if (!is_sealed(bytes)) refuse(path, "is damaged: its content is not what its stage wrote");
   try {
     return from_bytes(bytes);
   } catch (const hdf5::Failure& failure) {

@@ -78,15 +78,15 @@ class Run {
 public:
   Run(const Start& start, Drive drive)
       : start_(start), drive_(std::move(drive)), begin_(drive_.model.mesh.nodes),
-        folder_(start.arguments.out.parent_path()), system_(drive_.model, start.arguments.threads),
-        newton_(system_, newton_options(drive_.path)), history_(folder_ / "history.csv"), series_(folder_),
-        contact_check_(drive_.model.mesh, start.workflow.site.up) {}
+        system_(drive_.model, start.arguments.threads), newton_(system_, newton_options(drive_.path)),
+        history_(*start.outputs), series_(*start.outputs), contact_check_(drive_.model.mesh, start.workflow.site.up) {}
 
   // Throws Error with exit code 5, after everything is written, where the path did not reach its end.
   void run() {
     interrupted = 0;
     std::signal(SIGINT, note_interrupt);
     std::signal(SIGTERM, note_interrupt);
+    if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup
     assembly::Configuration c{begin_, VecX::Zero(static_cast<Eigen::Index>(drive_.state.chambers.size())), 0};
     for (std::size_t i = 0; i < drive_.state.chambers.size(); ++i) {
       c.pressures[static_cast<Eigen::Index>(i)] = drive_.state.chambers[i].gauge_pressure;
@@ -310,7 +310,7 @@ private:
     state.provenance.verdict = verdict;
     state.provenance.load_factor = c.load_factor;
     const Clock writing;
-    pipeline::state::write_state(state, start_.arguments.out);
+    pipeline::state::write_state(state, *start_.outputs, start_.outputs->state_name());
     io_ += writing.seconds();
 
     Summary summary;
@@ -396,7 +396,7 @@ private:
     for (const std::string& text : drive_.not_modelled) summary.append("not_modelled", text);
     if (!contact_.empty()) summary.append("warnings", contact_);
     if (drive_.report) drive_.report(state, foils, summary);
-    summary.write(folder_ / "summary.json");
+    summary.write(*start_.outputs);
     if (!reached) {
       throw base::Error(base::ExitCode::no_equilibrium, verdict + "; the last good state is written and marked");
     }
@@ -405,7 +405,6 @@ private:
   const Start& start_;
   Drive drive_;
   std::vector<Vec3> begin_;
-  std::filesystem::path folder_;
   Clock clock_;
   assembly::System system_;
   path::Newton newton_;

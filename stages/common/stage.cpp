@@ -77,21 +77,11 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
   return arguments;
 }
 
-Start read_start(const char* kind, int argc, char** argv) {
-  Start start;
-  start.program = std::string("pneuma-") + kind;
-  const bool needs_input = std::string(kind) != "mesh";
-  start.arguments = read_arguments(start.program.c_str(), needs_input, argc, argv);
-  start.workflow = pipeline::workflow::read_stage(start.arguments.config);
-  const pipeline::workflow::StageSettings& stage = start.stage();
-  if (stage.run != kind) {
-    throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
-                                       start.arguments.config.string(), stage.run, start.program, kind));
-  }
-  check_laws(start.workflow.materials, start.workflow.site.temperature);
-  if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
-  if (!needs_input || start.arguments.in.empty()) return start;
+namespace {
 
+// Reads the input state and checks that it belongs to the stage.
+void read_input(Start& start) {
+  const pipeline::workflow::StageSettings& stage = start.stage();
   start.state = pipeline::state::read_state(start.arguments.in);
   const State& state = start.state;
   const auto refuse = [&](const std::string& what) {
@@ -113,9 +103,29 @@ Start read_start(const char* kind, int argc, char** argv) {
   for (std::size_t i = 0; same && i < cushion.chambers.size(); ++i)
     same = state.chambers[i].name == cushion.chambers[i].name;
   if (!same) refuse("the state holds other foils or chambers than the workflow");
-  return start;
 }
 
+} // namespace
+
+Start read_start(const char* kind, int argc, char** argv) {
+  Start start;
+  start.program = std::string("pneuma-") + kind;
+  const bool needs_input = std::string(kind) != "mesh";
+  start.arguments = read_arguments(start.program.c_str(), needs_input, argc, argv);
+  start.workflow = pipeline::workflow::read_stage(start.arguments.config);
+  const pipeline::workflow::StageSettings& stage = start.stage();
+  if (stage.run != kind) {
+    throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
+                                       start.arguments.config.string(), stage.run, start.program, kind));
+  }
+  check_laws(start.workflow.materials, start.workflow.site.temperature);
+  if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
+  if (needs_input && !start.arguments.in.empty()) read_input(start);
+  if (!start.arguments.check) {
+    start.outputs = std::make_unique<pipeline::files::Outputs>(start.arguments.out, start.arguments.in);
+  }
+  return start;
+}
 pipeline::state::Provenance provenance(const Start& start) {
   pipeline::state::Provenance p;
   p.program = start.program + " " + version;

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
+#include "pipeline/files/outputs.h"
 #include "pipeline/state/state.h"
 #include "pipeline/workflow/settings.h"
 #include "stages/common/law.h"
@@ -31,9 +33,10 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
 struct Start {
   std::string program; // "pneuma-inflate"
   Arguments arguments;
-  Workflow workflow; // one stage in it
-  MaterialLaws laws; // of the foils' materials; none for the mesh stage
-  State state;       // of --in; empty for the mesh stage
+  Workflow workflow;                                 // one stage in it
+  MaterialLaws laws;                                 // of the foils' materials; none for the mesh stage
+  State state;                                       // of --in; empty for the mesh stage
+  std::unique_ptr<pipeline::files::Outputs> outputs; // where everything is written; none with --check
 
   const pipeline::workflow::StageSettings& stage() const { return workflow.stages.front(); }
 };

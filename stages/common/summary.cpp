@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/common/summary.h"
 
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
-
-#include "geometry/base/errors.h"
 
 namespace pneuma::stages::common {
 
@@ -57,41 +52,21 @@ void Summary::append(const std::string& path, const std::string& value) {
   list.push_back(value);
 }
 
-namespace {
-
-[[noreturn]] void cannot_write(const std::filesystem::path& file) {
-  throw base::Error(base::ExitCode::bad_state, fmt::format("cannot write {}: {}", file.string(), std::strerror(errno)));
+void Summary::write(pipeline::files::Outputs& outputs) const {
+  pipeline::files::write_file(outputs.file("summary.json"), data_->json.dump(2) + "\n");
 }
 
-} // namespace
-
-void Summary::write(const std::filesystem::path& file) const {
-  std::filesystem::path temporary = file;
-  temporary += ".tmp";
-  {
-    std::ofstream stream(temporary);
-    stream << data_->json.dump(2) << '\n';
-    stream.flush();
-    if (!stream) cannot_write(file);
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error) cannot_write(file);
-}
-
-History::History(std::filesystem::path file) : file_(std::move(file)) {}
+History::History(pipeline::files::Outputs& outputs) : outputs_(outputs) {}
 
 void History::add(const Row& row) {
-  std::ofstream stream(file_, started_ ? std::ios::app : std::ios::trunc);
-  if (!started_) {
-    for (std::size_t i = 0; i < row.size(); ++i) stream << (i > 0 ? "," : "") << row[i].first;
-    stream << '\n';
-    started_ = true;
+  std::string text;
+  if (!file_) {
+    file_ = std::make_unique<pipeline::files::GrowingFile>(outputs_.file("history.csv"));
+    for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? "," : "") + row[i].first;
+    text += '\n';
   }
-  for (std::size_t i = 0; i < row.size(); ++i) stream << (i > 0 ? "," : "") << fmt::format("{}", row[i].second);
-  stream << '\n';
-  stream.flush();
-  if (!stream) cannot_write(file_);
+  for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format("{}{}", i > 0 ? "," : "", row[i].second);
+  file_->add(text + "\n");
 }
 
 double peak_memory() {

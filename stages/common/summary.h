@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/base/types.h"
+#include "pipeline/files/outputs.h"
 
 namespace pneuma::stages::common {
 
@@ -30,24 +31,24 @@ public:
   void set(const std::string& path, const Vec3& value);
   void append(const std::string& path, const std::string& value); // to a list of texts
 
-  // Written to a temporary file and renamed; throws Error with the system's reason.
-  void write(const std::filesystem::path& file) const;
+  // Throws MachineError.
+  void write(pipeline::files::Outputs& outputs) const;
 
 private:
   struct Data;
   std::unique_ptr<Data> data_;
 };
 
-// history.csv: one row per accepted step, written and flushed at once. Columns are fixed by the first row.
+// history.csv: one row per accepted step, written at once. Columns are fixed by the first row.
 class History {
 public:
-  explicit History(std::filesystem::path file);
+  explicit History(pipeline::files::Outputs& outputs);
   using Row = std::vector<std::pair<std::string, double>>; // column -> value, SI
   void add(const Row& row);
 
 private:
-  std::filesystem::path file_;
-  bool started_ = false;
+  pipeline::files::Outputs& outputs_;
+  std::unique_ptr<pipeline::files::GrowingFile> file_;
 };
 
 double peak_memory(); // bytes

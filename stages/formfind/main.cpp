@@ -74,7 +74,7 @@ int run(int argc, char** argv) {
   });
 
   common::Summary summary;
-  common::History history(start.arguments.out.parent_path() / "history.csv");
+  common::History history(*start.outputs);
   int updates = 0;
   int factorizations = 0;
   bool converged = true;
@@ -195,7 +195,7 @@ int run(int argc, char** argv) {
     }
   }
 
-  pipeline::state::write_state(state, start.arguments.out);
+  pipeline::state::write_state(state, *start.outputs, start.outputs->state_name());
   summary.set("stage", "formfind");
   summary.set("id", start.stage().id);
   summary.set("converged", converged);
@@ -209,7 +209,7 @@ int run(int argc, char** argv) {
   summary.set("memory_peak", common::peak_memory());
   summary.append("modelled", "a film of uniform, isotropic prestress under uniform pressure");
   summary.append("not_modelled", "weight of the foils, elasticity, cutting patterns");
-  summary.write(start.arguments.out.parent_path() / "summary.json");
+  summary.write(*start.outputs);
   if (converged) return 0;
   const std::string pressure_key =
       state.chambers.empty() ? "" : "stages." + start.stage().id + ".gauge_pressure." + state.chambers[0].name;

@@ -10,7 +10,7 @@
 
 #include "geometry/base/errors.h"
 #include "pipeline/drawing/chart.h"
-#include "pipeline/state/whole_file.h"
+#include "pipeline/files/file.h"
 
 namespace pneuma::stages::material {
 
@@ -104,7 +104,7 @@ void write_csv(std::span<const Curve> curves, const Options& options) {
       }
     }
   }
-  pipeline::state::PendingFile(options.csv, text).publish();
+  pipeline::files::write_file(options.csv, text);
 }
 
 void write_svg(std::span<const Curve> curves, std::span<const TestCurve> tests, const Options& options) {

@@ -111,7 +111,7 @@ int run(int argc, char** argv) {
   if (start.arguments.check) return 0;
   base::say(fmt::format("{} nodes, {} elements {} in {} blocks", state.mesh.nodes.size(), elements,
                         geometry::name_of(state.mesh.element), state.mesh.blocks.size()));
-  pipeline::state::write_state(state, start.arguments.out);
+  pipeline::state::write_state(state, *start.outputs, start.outputs->state_name());
   summary.set("stage", "mesh");
   summary.set("id", start.stage().id);
   summary.set("converged", true);
@@ -119,7 +119,7 @@ int run(int argc, char** argv) {
   common::summarize_mesh(state, summary);
   summary.set("timing.total", clock.seconds());
   summary.set("memory_peak", common::peak_memory());
-  summary.write(start.arguments.out.parent_path() / "summary.json");
+  summary.write(*start.outputs);
   return 0;
 }
 

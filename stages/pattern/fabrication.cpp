@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "pipeline/drawing/drawing.h"
-#include "pipeline/state/whole_file.h"
 #include "stages/pattern/strip_drawing.h"
 
 namespace pneuma::stages::pattern {
@@ -22,7 +21,6 @@ using geometry::fabrication::CutStrip;
 using geometry::fabrication::FlatStrip;
 using geometry::fabrication::Placement;
 using geometry::fabrication::Side;
-using pipeline::state::PendingFile;
 
 constexpr double mm = 1e3;
 constexpr double notch_without_allowance = 0.005; // m
@@ -130,15 +128,6 @@ std::string seams_table(const std::vector<SeamFigures>& seams) {
   return table;
 }
 
-struct Files {
-  std::filesystem::path dxf, svg, strips, seams;
-};
-
-Files files_of(const std::string& foil, const std::filesystem::path& folder) {
-  return {folder / (foil + ".dxf"), folder / (foil + ".svg"), folder / (foil + "_strips.csv"),
-          folder / (foil + "_seams.csv")};
-}
-
 void add_sums(Fabrication& result) {
   for (const StripFigures& strip : result.strips) {
     result.net_area += strip.net_area;
@@ -183,20 +172,11 @@ Fabrication fabricate(const std::string& foil, std::span<const StripSheet> strip
   return result;
 }
 
-void write_sheets(const std::string& foil, const Fabrication& made, const std::filesystem::path& folder) {
-  const Files files = files_of(foil, folder);
-  write_dxf(made.drawing, files.dxf);
-  write_svg(made.drawing, files.svg);
-  PendingFile(files.strips, made.strips_table).publish();
-  PendingFile(files.seams, made.seams_table).publish();
-}
-
-void remove_sheets(const std::string& foil, const std::filesystem::path& folder) {
-  const Files files = files_of(foil, folder);
-  for (const std::filesystem::path& file : {files.dxf, files.svg, files.strips, files.seams}) {
-    std::error_code ignored; // most often there is none
-    std::filesystem::remove(file, ignored);
-  }
+void write_sheets(const std::string& foil, const Fabrication& made, pipeline::files::Outputs& outputs) {
+  write_dxf(made.drawing, outputs.file(foil + ".dxf"));
+  write_svg(made.drawing, outputs.file(foil + ".svg"));
+  pipeline::files::write_file(outputs.file(foil + "_strips.csv"), made.strips_table);
+  pipeline::files::write_file(outputs.file(foil + "_seams.csv"), made.seams_table);
 }
 
 } // namespace pneuma::stages::pattern

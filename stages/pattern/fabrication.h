@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "geometry/fabrication/fabrication.h"
 #include "pipeline/drawing/drawing.h"
+#include "pipeline/files/outputs.h"
 
 namespace pneuma::stages::pattern {
 
@@ -63,11 +63,8 @@ struct Fabrication {
 Fabrication fabricate(const std::string& foil, std::span<const StripSheet> strips,
                       const geometry::fabrication::Allowances& allowances, const RollSheet& roll);
 
-// Writes `<foil>.dxf`, `<foil>.svg`, `<foil>_strips.csv` and `<foil>_seams.csv` into `folder`, each whole or not at
-// all. Throws StateError where a file cannot be written.
-void write_sheets(const std::string& foil, const Fabrication& made, const std::filesystem::path& folder);
-
-// Removes what an earlier run has written of a foil that is not cut any more.
-void remove_sheets(const std::string& foil, const std::filesystem::path& folder);
+// Writes `<foil>.dxf`, `<foil>.svg`, `<foil>_strips.csv` and `<foil>_seams.csv`, each whole or not at all. Throws
+// MachineError.
+void write_sheets(const std::string& foil, const Fabrication& made, pipeline::files::Outputs& outputs);
 
 } // namespace pneuma::stages::pattern

@@ -199,19 +199,6 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
   });
 }
 
-// Drawings and tables beside the state, after all foils have theirs; none of an earlier run stay that do not belong.
-void publish(const common::Start& start, const std::map<std::string, Fabrication>& made) {
-  const std::filesystem::path folder = start.arguments.out.parent_path();
-  for (const workflow::FoilSettings& foil : start.workflow.cushion.foils) {
-    const auto found = made.find(foil.name);
-    if (found != made.end()) {
-      write_sheets(foil.name, found->second, folder);
-    } else {
-      remove_sheets(foil.name, folder);
-    }
-  }
-}
-
 int run(int argc, char** argv) {
   const common::Clock clock;
   const common::Start start = common::read_start("pattern", argc, argv);
@@ -259,15 +246,16 @@ int run(int argc, char** argv) {
   welded.state.provenance.converged = true;
   welded.state.provenance.verdict = "converged";
   welded.state.provenance.load_factor = 1;
-  publish(start, sheets);
-  pipeline::state::write_state(welded.state, start.arguments.out);
+  // after all foils have theirs
+  for (const auto& [foil, made] : sheets) write_sheets(foil, made, *start.outputs);
+  pipeline::state::write_state(welded.state, *start.outputs, start.outputs->state_name());
   common::summarize_mesh(welded.state, summary);
   summary.set("timing.total", clock.seconds());
   summary.set("memory_peak", common::peak_memory());
   summary.append("modelled", "strips welded edge to edge, mating seams equally long");
   summary.append("not_modelled", "double thickness of the welds");
   summary.append("not_modelled", "curvature of the frame's clamps");
-  summary.write(start.arguments.out.parent_path() / "summary.json");
+  summary.write(*start.outputs);
   return 0;
 }
 

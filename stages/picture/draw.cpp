@@ -2,9 +2,7 @@
 #include "stages/picture/draw.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -29,9 +27,11 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
 #include "geometry/base/errors.h"
+#include "pipeline/files/file.h"
 #include "pipeline/schema/spelling.h"
 #include "stages/picture/offscreen.h"
 #include "stages/picture/surface.h"
@@ -478,11 +478,13 @@ void write_png(vtkRenderWindow* window, const std::filesystem::path& path) {
   image->ShouldRerenderOff();
   const vtkNew<vtkPNGWriter> writer;
   writer->SetInputConnection(image->GetOutputPort());
-  writer->SetFileName(path.c_str());
+  writer->WriteToMemoryOn();
   writer->Write();
-  if (writer->GetErrorCode() != 0) {
-    throw base::StateError(fmt::format("{}: the picture cannot be written: {}", path.string(), std::strerror(errno)));
-  }
+  vtkUnsignedCharArray* bytes = writer->GetResult();
+  if (bytes == nullptr)
+    throw base::MachineError(fmt::format("{}: the picture cannot be made: no memory", path.string()));
+  pipeline::files::write_file(path, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                                     static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
 } // namespace

@@ -18,13 +18,16 @@
 namespace pneuma::pipeline::workflow {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 // `fail-ID`: ends with the code in it; `slow-ID`: works for a minute; `meet-ID`: needs the stage named in it at its
-// side. `check-KIND`: commands that answer --check, with the settings in `$config`; each check is noted in `checks`.
+// side; `steps-ID`: writes those steps; `verdict-ID`: the summary of a stage that fails. `check-KIND`: commands that
+// answer --check, with the settings in `$config`; each check is noted in `checks`.
 constexpr const char* script = R"sh(#!/bin/sh
 here=$(dirname "$0")
 if [ "$1" = --check ]; then
@@ -47,6 +50,13 @@ if [ -f "$here/meet-$id" ]; then
   for i in $(seq 20); do [ -f "$here/started-$(cat "$here/meet-$id")" ] && met=yes && break; sleep 0.05; done
   [ -n "$met" ] || exit 9
 fi
+steps=$(cat "$here/steps-$id" 2>/dev/null)
+for step in $steps; do # a path that is written step by step, and entered among the outputs
+  mkdir -p "$(dirname "$out")/steps"
+  echo "steps/$step.hdf" >>"$(dirname "$out")/.state.hdf.outputs"
+  echo "step $step" >"$(dirname "$out")/steps/$step.hdf"
+done
+[ -f "$here/fail-$id" ] && [ -f "$here/verdict-$id" ] && cp "$here/verdict-$id" "$(dirname "$out")/summary.json"
 [ -f "$here/fail-$id" ] && echo "a complaint" >&2 && exit "$(cat "$here/fail-$id")"
 { sed '/^origin:/,$d' "$config"; if [ -n "$in" ]; then cat "$in"; fi; } >"$out.new"
 sha256sum <"$out.new" | cut -c1-64 >"$out.sha256"
@@ -257,9 +267,10 @@ TEST_F(RunnerTest, StageKilledByASignalHasFailed) {
 TEST_F(RunnerTest, MissingStageProgramIsSaid) {
   disarm("pneuma-wind");
   const Outcome outcome = pneuma({"w.yaml"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.text, HasSubstr("wind stages are not available in this build"));
+  EXPECT_EQ(outcome.code, 6);
+  EXPECT_THAT(outcome.text, ContainsRegex("gust: failed: the program `.*/pneuma-wind` cannot be run: No such file"));
   EXPECT_THAT(ran(), ElementsAre("mesh", "form", "inflated"));
+  EXPECT_EQ(pneuma({"check", "w.yaml"}).code, 6);
 }
 
 TEST_F(RunnerTest, DamagedStateIsComputedAgain) {
@@ -267,13 +278,125 @@ TEST_F(RunnerTest, DamagedStateIsComputedAgain) {
   std::ofstream(out("form") / "state.hdf", std::ios::app) << "x";
   const Outcome outcome = pneuma({"w.yaml"});
   EXPECT_THAT(ran(), ElementsAre("form")); // it is what it was: nothing after it runs
-  EXPECT_THAT(outcome.text, HasSubstr("form: runs: its state does not match its digest\n"));
+  EXPECT_THAT(outcome.text, HasSubstr("form: runs: its state.hdf was changed\n"));
   std::filesystem::remove(out("gust") / "state.hdf");
   pneuma({"w.yaml"});
   EXPECT_THAT(ran(), ElementsAre("gust"));
   std::filesystem::remove(out("gust") / "summary.json");
   pneuma({"w.yaml"});
   EXPECT_THAT(ran(), ElementsAre("gust"));
+}
+
+TEST_F(RunnerTest, EveryOutputThatIsMissingTruncatedOrEditedIsMadeAnew) {
+  arm("steps-gust", "0000 0001");
+  pneuma({"w.yaml"});
+  const std::vector<std::string> outputs = {"state.hdf",       "state.hdf.sha256", "summary.json",  "log.txt",
+                                            "provenance.json", "steps/0000.hdf",   "steps/0001.hdf"};
+  for (const std::string& name : outputs) {
+    const std::string whole = text_of(out("gust") / name);
+    for (const char* damage : {"missing", "empty", "truncated", "edited", "longer"}) {
+      SCOPED_TRACE(name + " " + damage);
+      std::string text = whole;
+      if (damage == std::string("edited")) text[text.size() / 2] ^= 1;
+      if (damage == std::string("longer")) text += "x";
+      if (damage == std::string("truncated")) text.resize(text.size() / 2);
+      if (damage == std::string("empty")) text.clear();
+      std::filesystem::remove(out("gust") / name);
+      if (damage != std::string("missing")) std::ofstream(out("gust") / name) << text;
+      EXPECT_THAT(pneuma({"status", "w.yaml"}).text, HasSubstr("gust      wind      stale: "));
+      pneuma({"w.yaml"});
+      EXPECT_THAT(ran(), ElementsAre("gust"));
+      EXPECT_EQ(text_of(out("gust") / name), whole);
+    }
+  }
+  std::filesystem::remove(out("gust") / "steps/0001.hdf"); // and a link of the same bytes is not what was written
+  std::filesystem::copy_file(out("gust") / "steps/0000.hdf", folder.path() / "elsewhere");
+  std::filesystem::create_symlink(folder.path() / "elsewhere", out("gust") / "steps/0001.hdf");
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), ElementsAre("gust"));
+  EXPECT_EQ(text_of(folder.path() / "elsewhere"), "step 0000\n");
+}
+
+TEST_F(RunnerTest, WhatARunDoesNotWriteAgainIsGone) {
+  arm("steps-gust", "0000 0001 0002");
+  pneuma({"w.yaml"});
+  folder.write("out/w/gust/mine.pvsm", "a view");
+  arm("steps-gust", "0000");
+  pneuma({"w.yaml", "--force", "gust"});
+  EXPECT_TRUE(std::filesystem::exists(out("gust") / "steps/0000.hdf"));
+  EXPECT_FALSE(std::filesystem::exists(out("gust") / "steps/0001.hdf"));
+  arm("fail-gust", "5");
+  disarm("steps-gust");
+  EXPECT_EQ(pneuma({"w.yaml", "--force", "gust"}).code, 5);
+  EXPECT_FALSE(std::filesystem::exists(out("gust") / "steps"));
+  EXPECT_FALSE(std::filesystem::exists(out("gust") / "state.hdf"));
+  EXPECT_FALSE(std::filesystem::exists(out("gust") / "summary.json"));
+  EXPECT_TRUE(std::filesystem::exists(out("gust") / "mine.pvsm")); // no result
+}
+
+TEST_F(RunnerTest, WhatAKilledStageLeftIsGoneToo) {
+  arm("steps-gust", "0000 0001");
+  arm("fail-gust", "137");
+  pneuma({"w.yaml"});
+  EXPECT_TRUE(std::filesystem::exists(out("gust") / "steps/0001.hdf"));
+  disarm("fail-gust");
+  disarm("steps-gust");
+  pneuma({"w.yaml"});
+  EXPECT_FALSE(std::filesystem::exists(out("gust") / "steps"));
+}
+
+TEST_F(RunnerTest, FilesOfOneStemDoNotShareAFolder) {
+  pneuma({"w.yaml"});
+  std::filesystem::copy_file(folder.path() / "w.yaml", folder.path() / "w.yml");
+  pneuma({"w.yml"});
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/w.yml/gust/state.hdf"));
+  pneuma({"w.yaml"});
+  EXPECT_THAT(ran(), IsEmpty());
+}
+
+TEST_F(RunnerTest, StatusCallsAStageThatEndedByItsVerdict) {
+  arm("fail-gust", "5");
+  arm("verdict-gust", R"({"verdict": "contact", "load_factor": 0.4})");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 5);
+  EXPECT_THAT(pneuma({"status", "w.yaml"}).text, HasSubstr("gust      wind      stale: it ended: contact\n"));
+  disarm("verdict-gust");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 5);
+  EXPECT_THAT(pneuma({"status", "w.yaml"}).text, HasSubstr("gust      wind      stale: it ended with exit code 5\n"));
+}
+
+TEST_F(RunnerTest, NoLinkLeadsResultsElsewhere) {
+  std::filesystem::create_directories(folder.path() / "elsewhere");
+  std::filesystem::create_directories(out("x").parent_path());
+  std::filesystem::create_directory_symlink(folder.path() / "elsewhere", out("gust"));
+  const Outcome outcome = pneuma({"w.yaml"});
+  EXPECT_EQ(outcome.code, 6);
+  EXPECT_THAT(outcome.text, HasSubstr("a link has its name"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "elsewhere"));
+  EXPECT_TRUE(std::filesystem::exists(out("calm") / "state.hdf")); // its sibling has run
+  std::filesystem::remove(out("gust"));
+  folder.write("precious", "kept");
+  for (const char* name : {"stage.yaml", "log.txt", "provenance.json", "summary.json"}) {
+    std::filesystem::create_directories(out("gust"));
+    std::filesystem::create_symlink(folder.path() / "precious", out("gust") / name);
+  }
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_EQ(text_of(folder.path() / "precious"), "kept");
+}
+
+TEST_F(RunnerTest, WithoutAStandardOutputNothingIsSaidIntoItsFiles) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    setenv("PNEUMA_STAGES", (folder.path() / "bin").c_str(), 1);
+    for (int stream = 0; stream <= 2; ++stream) close(stream);
+    if (chdir(folder.path().c_str()) != 0) _exit(126);
+    execl(PNEUMA_PROGRAM, "pneuma", "w.yaml", nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(text_of(out("mesh").parent_path() / ".lock"), "");
+  EXPECT_THAT(text_of(out("mesh") / "log.txt"), HasSubstr("threads"));
 }
 
 TEST_F(RunnerTest, SiblingsRunSideBySide) {
@@ -298,6 +421,22 @@ TEST_F(RunnerTest, InterruptGives130AndKeepsWhatIsDone) {
   disarm("slow-calm");
   EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
   EXPECT_THAT(ran(), UnorderedElementsAre("gust", "calm"));
+}
+
+TEST_F(RunnerTest, AHangUpEndsLikeAnInterruptButNotUnderNohup) {
+  arm("slow-gust");
+  pid_t pid = start({"w.yaml"});
+  ASSERT_TRUE(has_started("gust"));
+  kill(pid, SIGHUP);
+  EXPECT_EQ(end_of(pid).code, 130);
+  std::filesystem::remove(folder.path() / "bin/started-gust");
+  const auto handler = std::signal(SIGHUP, SIG_IGN);
+  pid = start({"w.yaml"});
+  std::signal(SIGHUP, handler);
+  ASSERT_TRUE(has_started("gust"));
+  kill(pid, SIGHUP);
+  kill(pid, SIGTERM);
+  EXPECT_THAT(end_of(pid).text, Not(HasSubstr("interrupted again")));
 }
 
 TEST_F(RunnerTest, SecondInterruptKillsAStageThatDoesNotListen) {
@@ -445,7 +584,7 @@ TEST_F(RunnerTest, CheckLeavesNoFilesBehindWhenInterrupted) {
   EXPECT_TRUE(std::filesystem::is_empty(temporary));
   std::filesystem::remove(temporary);
   const Outcome without = pneuma({"check", "w.yaml"});
-  EXPECT_EQ(without.code, 2);
+  EXPECT_EQ(without.code, 6);
   EXPECT_THAT(without.text, HasSubstr("let TMPDIR name a folder"));
   unsetenv("TMPDIR");
 }
@@ -488,9 +627,12 @@ TEST_F(RunnerTest, StatusOfAPatternShowsStripsWasteAndMismatch) {
                                         {"name": "upper-2", "seam_mismatch_max": 3e-4}],
                              "waste_fraction": 0.123, "weld_length": 12.5}}})");
   const std::string text = pneuma({"status", "w.yaml"}).text;
-  EXPECT_THAT(text, HasSubstr("strips    pattern   fresh\n    verdict: cut\n    pattern lower: 1 strips\n"
-                              "    pattern upper: 2 strips, seams differ by 0.3 mm at most, waste 12.3 %, "
-                              "welds 12.5 m\n"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "strips    pattern   stale: its summary.json was changed\n    verdict: cut\n    pattern lower: 1 strips\n"
+          "    pattern upper: 2 strips, seams differ by 0.3 mm at most, waste 12.3 %, "
+          "welds 12.5 m\n"));
 }
 
 TEST_F(RunnerTest, MistypedCommandGetsASuggestion) {
@@ -500,14 +642,15 @@ TEST_F(RunnerTest, MistypedCommandGetsASuggestion) {
 }
 
 TEST_F(RunnerTest, OtherProgramsAreForwardedToOrSaidToBeMissing) {
-  const Outcome missing = pneuma({"audit", "state.hdf"});
-  EXPECT_EQ(missing.code, 2);
-  EXPECT_THAT(missing.text, HasSubstr("`pneuma audit` is not available in this build"));
-  const auto file = folder.write("bin/pneuma-audit", "#!/bin/sh\necho \"audit of $1\"\nexit 7\n");
+  const Outcome missing = pneuma({"material", "foils.yaml"});
+  EXPECT_EQ(missing.code, 6);
+  EXPECT_THAT(missing.text, HasSubstr("pneuma-material` cannot be run: No such file or directory; build it"));
+  const auto file = folder.write("bin/pneuma-material", "#!/bin/sh\necho \"curves of $1\"\nexit 7\n");
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-  const Outcome forwarded = pneuma({"audit", "state.hdf"});
+  const Outcome forwarded = pneuma({"material", "foils.yaml"});
   EXPECT_EQ(forwarded.code, 7);
-  EXPECT_EQ(forwarded.text, "audit of state.hdf\n");
+  EXPECT_EQ(forwarded.text, "curves of foils.yaml\n");
+  EXPECT_THAT(pneuma({"audit", "state.hdf"}).text, HasSubstr("`pneuma audit` is not available yet"));
   EXPECT_THAT(pneuma({"study", "w.yaml"}).text, HasSubstr("`pneuma study` is not available yet"));
 }
 

@@ -163,7 +163,7 @@ TEST(StateFile, OnAFullDiskKeepsTheOldPair) {
   rlimit small = before;
   small.rlim_cur = 10'000;
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string text = complaint(base::ExitCode::bad_state,
+  const std::string text = complaint(base::ExitCode::machine_refuses,
                                      [&] { write_state(cushion_state(ElementType::T6, 8, 8), folder / "a.hdf"); });
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
   std::signal(SIGXFSZ, handler);
@@ -176,7 +176,8 @@ TEST(StateFile, OnAFullDiskKeepsTheOldPair) {
 
 TEST(StateFile, CannotBeWrittenWhereThereIsNoFolder) {
   const TemporaryFolder folder;
-  const std::string text = complaint(base::ExitCode::bad_state, [&] { write_state(State{}, folder / "none/a.hdf"); });
+  const std::string text =
+      complaint(base::ExitCode::machine_refuses, [&] { write_state(State{}, folder / "none/a.hdf"); });
   EXPECT_THAT(text, HasSubstr("No such file or directory"));
 }
 

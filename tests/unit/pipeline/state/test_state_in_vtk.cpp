@@ -77,7 +77,8 @@ TEST(StateInVtk, OfEveryElementIsWhatWasWritten) {
 
 TEST(StateInVtk, EveryStepOfASeriesIsReadable) {
   const tests::TemporaryFolder folder;
-  StepSeries series(folder.path());
+  files::Outputs outputs(folder / "a.hdf", "");
+  StepSeries series(outputs);
   State state = tests::cushion_state(ElementType::T6, 2, 2);
   for (int i = 0; i < 2; ++i) {
     state.mesh.nodes.back().z() += 0.1;

@@ -20,7 +20,8 @@ using tests::TemporaryFolder;
 
 TEST(StepSeries, ListsItsStepsWithTheirTimes) {
   const TemporaryFolder folder;
-  StepSeries series(folder.path());
+  files::Outputs outputs(folder / "a.hdf", "");
+  StepSeries series(outputs);
   const State state = cushion_state(ElementType::T3, 2, 1);
   const std::vector<double> times = {0, 0.1, 1.0 / 3};
   for (const double time : times) series.write(state, time);
@@ -35,25 +36,18 @@ TEST(StepSeries, ListsItsStepsWithTheirTimes) {
   }
 }
 
-TEST(StepSeries, RemovesTheStepsOfAnEarlierRunAndNothingElse) {
+TEST(StepSeries, EntersItsFilesAmongTheOutputs) {
   const TemporaryFolder folder;
-  const State state = cushion_state(ElementType::T3, 1, 1);
-  StepSeries first(folder.path());
-  for (int i = 0; i < 3; ++i) first.write(state, i);
-  tests::put_bytes(folder / "steps/notes.txt", "mine");
-  StepSeries second(folder.path());
-  EXPECT_TRUE(std::filesystem::exists(folder / "steps/0002.hdf")); // until there is something new
-  second.write(state, 0.5);
-  EXPECT_TRUE(std::filesystem::exists(folder / "steps/0000.hdf"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "steps/0001.hdf"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "steps/0002.hdf.sha256"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "steps/notes.txt"));
-  EXPECT_EQ(nlohmann::json::parse(bytes_of(folder / "steps.hdf.series")).at("files").size(), 1U);
+  files::Outputs outputs(folder / "a.hdf", "");
+  StepSeries(outputs).write(cushion_state(ElementType::T3, 1, 1), 0.5);
+  const std::set<std::string> expected = {"steps.hdf.series", "steps/0000.hdf", "steps/0000.hdf.sha256"};
+  EXPECT_EQ(files::outputs_of(folder / "a.hdf"), expected);
 }
 
 TEST(StepSeries, RefusesATimeThatJsonCannotHold) {
   const TemporaryFolder folder;
-  EXPECT_THROW(StepSeries(folder.path()).write(State{}, std::nan("")), base::Error);
+  files::Outputs outputs(folder / "a.hdf", "");
+  EXPECT_THROW(StepSeries(outputs).write(State{}, std::nan("")), base::Error);
 }
 
 } // namespace

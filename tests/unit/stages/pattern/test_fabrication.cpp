@@ -29,7 +29,8 @@ using testing::HasSubstr;
 Fabrication fabricate_into(const std::filesystem::path& folder, std::span<const StripSheet> strips,
                            const Allowances& given, const RollSheet& roll) {
   Fabrication made = fabricate("upper", strips, given, roll);
-  write_sheets("upper", made, folder);
+  pipeline::files::Outputs outputs(folder / "state.hdf", "");
+  write_sheets("upper", made, outputs);
   return made;
 }
 

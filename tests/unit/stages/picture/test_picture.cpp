@@ -164,7 +164,7 @@ TEST_F(Picture, WithoutEglSaysWhatToInstall) {
 TEST_F(Picture, IntoAFolderThatIsMissingIsAnError) {
   const Ended ended = picture(fmt::format("{} --out {} --field sag --size 100x100", (folder / "a.hdf").string(),
                                           (folder / "none/a.png").string()));
-  EXPECT_EQ(ended.code, 3) << ended.output;
+  EXPECT_EQ(ended.code, 6) << ended.output;
   EXPECT_THAT(ended.output, HasSubstr("cannot be written"));
 }
 
