@@ -92,8 +92,12 @@ std::string output_of(const Child& child, const Interrupts& interrupts) {
   }
 }
 
-bool is_of_the_user(int code) {
-  return code == static_cast<int>(ExitCode::bad_input) || code == static_cast<int>(ExitCode::impossible_geometry);
+// The code with which all ends where a program's check ended so; the loader of programs says 127.
+ExitCode meaning_of(int code) {
+  for (const ExitCode known : {ExitCode::bad_input, ExitCode::impossible_geometry, ExitCode::machine_refuses}) {
+    if (code == static_cast<int>(known)) return known;
+  }
+  return code == 127 ? ExitCode::machine_refuses : ExitCode::bug;
 }
 
 } // namespace
@@ -117,22 +121,22 @@ void check_by_stages(const Workflow& workflow, MeshCheck mesh) {
   const auto add = [&](const std::string& line) {
     if (known.insert(line).second) lines += (lines.empty() ? "" : "\n") + line;
   };
-  int worst = 0;
+  ExitCode worst = ExitCode::done;
   for (const auto& [program, child] : asked) {
     std::istringstream output(output_of(child, interrupts));
     for (std::string line; std::getline(output, line);) add(line);
     close(child.output);
     const int code = wait_for(child);
     if (code == 0) continue;
-    if (is_of_the_user(code)) {
-      if (worst == 0) worst = code;
-      continue;
-    }
-    worst = static_cast<int>(ExitCode::bug);
+    const ExitCode meaning = meaning_of(code);
+    if (worst == ExitCode::done || meaning == ExitCode::bug) worst = meaning;
+    if (code == 127)
+      add(fmt::format("{} cannot be started; raise the limit of memory (ulimit -v), or set up again", program));
+    if (meaning != ExitCode::bug) continue;
     const std::string end = code > 128 ? fmt::format("signal {}", code - 128) : fmt::format("exit code {}", code);
     add(fmt::format("{} --check ended by {}; please report it", program, end));
   }
-  if (worst != 0) throw base::Error(static_cast<ExitCode>(worst), lines);
+  if (worst != ExitCode::done) throw base::Error(worst, lines);
   if (!lines.empty()) fmt::print(stderr, "{}\n", lines);
 }
 

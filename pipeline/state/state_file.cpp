@@ -81,7 +81,9 @@ void write_state(const State& state, const fs::path& path) {
     bytes = to_bytes(state);
     bytes += seal_of(bytes);
   } catch (const hdf5::Failure& failure) {
-    throw base::Error(base::ExitCode::bug, fmt::format("{}: not written: {}", path.string(), failure.what()));
+    throw base::MachineError(fmt::format("`{}` cannot be written: {}; close other programs, or raise the limit of "
+                                         "memory (ulimit -v)",
+                                         path.string(), failure.what()));
   }
   std::error_code ignored;
   if (fs::is_directory(path, ignored))

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linear/cholesky.h"
 
+#include <new>
 #include <stdexcept>
 
 #include <cholmod.h>
-
-extern "C" void openblas_set_num_threads(int threads);
 
 namespace pneuma::solver::linear {
 
@@ -35,7 +34,7 @@ struct Cholesky::Workspace {
   Workspace& operator=(const Workspace&) = delete;
 
   void check(const char* what) const {
-    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::runtime_error(std::string(what) + ": out of memory");
+    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     if (common.status < 0) {
       throw std::runtime_error(std::string(what) + ": CHOLMOD status " + std::to_string(common.status));
     }
@@ -100,10 +99,6 @@ MatX Cholesky::solve(const MatX& b) {
 
 double Cholesky::pivot_ratio() const {
   return workspace_->factor->n == 0 ? 1.0 : cholmod_rcond(workspace_->factor, &workspace_->common);
-}
-
-void use_one_blas_thread() {
-  openblas_set_num_threads(1);
 }
 
 } // namespace pneuma::solver::linear

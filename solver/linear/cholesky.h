@@ -18,7 +18,7 @@ public:
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;
 
-  // False if the matrix is not positive definite: information, not an error. Throws std::runtime_error out of memory.
+  // False if the matrix is not positive definite: information, not an error. Throws std::bad_alloc.
   bool factorize(const SymmetricPattern& pattern, std::span<const double> values);
 
   // Solves for all columns of b [size][k] with the last factor. Only after factorize returned true.
@@ -31,8 +31,5 @@ private:
   struct Workspace;
   std::unique_ptr<Workspace> workspace_;
 };
-
-// One BLAS thread in this process (two single-threaded factors side by side beat one threaded factor after another).
-void use_one_blas_thread();
 
 } // namespace pneuma::solver::linear

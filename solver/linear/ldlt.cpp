@@ -2,6 +2,7 @@
 #include "solver/linear/ldlt.h"
 
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -64,10 +65,8 @@ struct Ldlt::Workspace {
       setting(workspace_percent) *= 2; // more pivots were delayed than the analysis made room for
       dmumps_c(&mumps);
     }
-    if (told(info) < 0) {
-      throw std::runtime_error("MUMPS stopped with INFOG(1) = " + std::to_string(told(info)) +
-                               (told(info) == -13 ? ": out of memory" : ""));
-    }
+    if (told(info) == -13) throw std::bad_alloc();
+    if (told(info) < 0) throw std::runtime_error("MUMPS stopped with INFOG(1) = " + std::to_string(told(info)));
   }
 };
 

@@ -19,7 +19,7 @@ public:
   Ldlt& operator=(Ldlt&&) noexcept;
 
   // False if the matrix is singular to rounding: pivots were met that are no more than noise; they were left out.
-  // Throws std::runtime_error out of memory.
+  // Throws std::bad_alloc.
   bool factorize(const SymmetricPattern& pattern, std::span<const double> values);
 
   // Solves for all columns of b [size][k] with the last factor.

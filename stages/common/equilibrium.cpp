@@ -12,6 +12,7 @@
 #include "geometry/gap.h"
 #include "geometry/surface.h"
 #include "pipeline/state/state_file.h"
+#include "solver/linear/blas.h"
 #include "solver/recovery/reactions.h"
 #include "stages/common/path_control.h"
 #include "stages/common/summary.h"
@@ -510,7 +511,7 @@ void run_equilibrium(const Start& start, Drive drive) {
   drive.not_modelled.insert(drive.not_modelled.end(),
                             {plastic ? "tear of the foil" : "yield, creep and tear of the foil: the law is elastic",
                              "contact forces between foils", "dynamics", "flexibility of the frame"});
-  solver::linear::use_one_blas_thread();
+  solver::linear::prepare_blas(start.arguments.threads);
   Run(start, std::move(drive)).run();
 }
 

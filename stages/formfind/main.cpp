@@ -12,7 +12,7 @@
 #include "pipeline/state/state_file.h"
 #include "solver/element/reference.h"
 #include "solver/formfinding/formfinding.h"
-#include "solver/linear/cholesky.h"
+#include "solver/linear/blas.h"
 #include "stages/common/foil_results.h"
 #include "stages/formfind/self_check.h"
 
@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
   const common::Clock clock;
   const common::Start start = common::read_start("formfind", argc, argv);
   if (start.arguments.check) return 0;
-  solver::linear::use_one_blas_thread();
+  solver::linear::prepare_blas(start.arguments.threads);
   const auto& settings = std::get<workflow::FormfindSettings>(start.stage().settings);
   formfinding::Options options;
   options.rule = start.state.stress_rule;

@@ -10,7 +10,7 @@
 #include "geometry/base/parallel.h"
 #include "geometry/surface.h"
 #include "pipeline/state/state_file.h"
-#include "solver/linear/cholesky.h"
+#include "solver/linear/blas.h"
 #include "stages/common/equilibrium.h"
 #include "stages/pattern/layout.h"
 #include "stages/pattern/report.h"
@@ -207,7 +207,7 @@ int run(int argc, char** argv) {
   const std::vector<std::size_t> chosen = foils_to_cut(start, settings);
   for (const std::size_t b : chosen) wanted_of(start, settings, b, 0); // that the foils can carry their prestress
   if (start.arguments.check) return 0;
-  solver::linear::use_one_blas_thread();
+  solver::linear::prepare_blas(start.arguments.threads);
   Welded welded = cut_and_flatten(start, settings, chosen);
 
   common::Summary summary;

@@ -2,7 +2,7 @@
 // Flat discs of rubber, clamped and free of stress, blown through their limit points, against the exact solution.
 #include "solver/analytical/circular_membrane.h"
 #include "solver/analytical/root.h"
-#include "solver/linear/cholesky.h"
+#include "solver/linear/blas.h"
 #include "solver/path/controlled_path.h"
 #include "tests/unit/solver/cushions.h"
 
@@ -74,7 +74,7 @@ struct Blown {
 
 class RubberDisc : public testing::TestWithParam<ElementType> {
 protected:
-  static void SetUpTestSuite() { linear::use_one_blas_thread(); } // as the programs do
+  static void SetUpTestSuite() { linear::prepare_blas(1); } // as the programs do
   bool quadratic() const { return geometry::is_quadratic(GetParam()); }
   std::array<int, 2> meshes() const { return quadratic() ? std::array{3, 6} : std::array{6, 12}; }
 };

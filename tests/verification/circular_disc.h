@@ -9,7 +9,7 @@
 
 #include "geometry/meshing/plan_mesh.h"
 #include "solver/analytical/circular_membrane.h"
-#include "solver/linear/cholesky.h"
+#include "solver/linear/blas.h"
 #include "solver/material/prestress.h"
 #include "solver/path/load_path.h"
 
@@ -108,7 +108,7 @@ struct SolvedDisc {
 // Follows the load from where the disc is.
 inline SolvedDisc solve_disc(const solver::assembly::Model& model, solver::assembly::Configuration& at) {
   using namespace solver;
-  linear::use_one_blas_thread(); // as the programs do: small factors wait for threads longer than they work
+  linear::prepare_blas(1); // as the programs do: small factors wait for threads longer than they work
   assembly::System system(model, 1);
   path::Newton newton(system, {});
   at.load_factor = 0;

@@ -4,6 +4,8 @@
 #include <map>
 #include <numbers>
 
+#include "solver/linear/blas.h"
+
 namespace pneuma::tests {
 
 using namespace solver;
@@ -77,7 +79,7 @@ assembly::Model burst_disc(ElementType element, int divisions, const material::L
 
 Burst::Burst(assembly::Model model, const path::PathControl& control, const path::ControlledPathOptions& options)
     : system(std::move(model), 1), newton(system, {}), at(start_of(system.model())) {
-  linear::use_one_blas_thread(); // as the programs do
+  linear::prepare_blas(1); // as the programs do
   std::vector<int> steps;
   path = path::follow_control(
       system, newton, at, control, options,

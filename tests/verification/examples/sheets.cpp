@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/linear/blas.h"
+
 namespace pneuma::tests {
 
 using namespace solver;
@@ -130,7 +132,7 @@ double reaction(const assembly::System& system, const std::vector<Index>& nodes,
 }
 
 PlainNewton plain_newton(assembly::System& system, assembly::Configuration& at, double enough, int most) {
-  linear::use_one_blas_thread(); // as the programs do
+  linear::prepare_blas(1); // as the programs do
   path::Work work;
   path::Tangent tangent(system, work);
   PlainNewton result;

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "solver/linear/blas.h"
+
 namespace pneuma::tests {
 
 using namespace solver;
@@ -16,7 +18,7 @@ assembly::Model pulled_strip(const PerforatedSheet& sheet, const material::Law& 
 PulledStrip::PulledStrip(const PerforatedSheet& sheet, const material::Law& law, double displacement, int parts,
                          double duration, double flow_tolerance)
     : system(pulled_strip(sheet, law, displacement), 1), newton(system, {}), at(start_of(system.model())) {
-  linear::use_one_blas_thread(); // as the programs do
+  linear::prepare_blas(1); // as the programs do
   const std::vector<Index> end = nodes_at(system.model().mesh, 1, sheet.height);
   path::LoadPathOptions options;
   options.parts = parts;

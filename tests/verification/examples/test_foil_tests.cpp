@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "solver/linear/blas.h"
 #include "solver/material/nurbs_fit.h"
 #include "solver/material/test_piece.h"
 #include "solver/path/controlled_path.h"
@@ -55,7 +56,7 @@ struct PulledFoil {
 
   PulledFoil(const material::Law& law, double x, double y, double strain, int parts)
       : system(model(law, x, y), 1), newton(system, {}), at(start_of(system.model())) {
-    linear::use_one_blas_thread(); // as the programs do
+    linear::prepare_blas(1); // as the programs do
     path::ControlledPathOptions options;
     options.parts = parts;
     const Index corner = nodes_at(system.model().mesh, 1, 1).back();

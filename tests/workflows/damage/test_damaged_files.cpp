@@ -56,7 +56,7 @@ std::string errors_in(const std::string& messages) {
   for (std::string line; std::getline(lines, line);) {
     if (line.find(": warning: ") == std::string::npos) errors += line + "\n";
   }
-  return errors.substr(0, 2000);
+  return errors.substr(0, errors.rfind('\n', 2000) + 1); // whole lines
 }
 
 std::string shown(const Job& job, const Answer& answer) {

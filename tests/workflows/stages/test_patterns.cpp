@@ -364,9 +364,9 @@ TEST_F(Patterns, OfAFoilThatIsNotCutAnyMoreDoNotLieAround) {
   run();
   EXPECT_TRUE(fs::exists(out("strips") / "lower.dxf"));
   const std::string drawing = bytes_of(out("strips") / "upper.dxf");
-  stage("strips_per_foil: 2, roll: {width: 1.2 m, weld: 10 mm, selvedge: 10 mm}"); // fails: what was made stays
+  stage("strips_per_foil: 2, roll: {width: 1.2 m, weld: 10 mm, selvedge: 10 mm}"); // fails: what was made is stale
   run(4);
-  EXPECT_EQ(bytes_of(out("strips") / "upper.dxf"), drawing);
+  EXPECT_FALSE(fs::exists(out("strips") / "upper.dxf"));
   stage("strips_per_foil: 3, foils: [upper]");
   run();
   EXPECT_NE(bytes_of(out("strips") / "upper.dxf"), drawing);

@@ -85,7 +85,8 @@ TEST(Dxf, ThatCannotBeWrittenSaysWhy) {
     write_dxf(example_drawing(), "/nowhere/strip.dxf");
     FAIL();
   } catch (const base::Error& error) {
-    EXPECT_STREQ(error.what(), "/nowhere/strip.dxf: cannot be written: No such file or directory");
+    EXPECT_EQ(error.code(), base::ExitCode::machine_refuses);
+    EXPECT_THAT(error.what(), testing::StartsWith("`/nowhere/strip.dxf` cannot be written: No such file or directory"));
   }
 }
 
