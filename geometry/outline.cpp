@@ -87,6 +87,31 @@ std::string plan_fault(const Plan& plan) {
   return ring_fault(corner_points(plan));
 }
 
+LocalFrame::LocalFrame(const Plan& plan) {
+  const std::vector<Vec2> corners = corner_points(plan);
+  if (corners.empty()) return;
+  Vec2 sum(0, 0);
+  double size = 0;
+  for (const Vec2& corner : corners) {
+    sum += corner - corners.front();
+    size = std::max(size, (corner - corners.front()).norm());
+  }
+  const Vec2 centre = sum / static_cast<double>(corners.size());
+  if ((corners.front() + centre).norm() <= 1e-12 * size) return;
+  corner_ = corners.front();
+  centre_ = centre;
+}
+
+Plan to_local(const Plan& plan, const LocalFrame& frame) {
+  Plan moved = plan;
+  if (auto* triangle = std::get_if<Triangle>(&moved)) {
+    for (Vec2& point : triangle->points) point = frame.to_local(point);
+  } else if (auto* polygon = std::get_if<Polygon>(&moved)) {
+    for (Vec2& point : polygon->points) point = frame.to_local(point);
+  }
+  return moved;
+}
+
 double area(const Plan& plan) {
   if (const auto* r = std::get_if<Rectangle>(&plan)) return r->length * r->width;
   if (const auto* c = std::get_if<Circle>(&plan)) return std::numbers::pi * c->radius * c->radius;

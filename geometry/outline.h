@@ -42,6 +42,23 @@ std::vector<base::Vec2> corner_points(const Plan& plan);
 // place; empty: nothing.
 std::string plan_fault(const Plan& plan);
 
+// Coordinates about a plan's own centre, the mean of its corners, so that no rounding depends on where it lies: plans
+// that differ by an offset get the same bits where the differences of their corners are exact. A plan that is centred
+// on the origin stays where it is.
+class LocalFrame {
+public:
+  LocalFrame() = default; // the user's own coordinates
+  explicit LocalFrame(const Plan& plan);
+  base::Vec2 to_local(const base::Vec2& point) const { return (point - corner_) - centre_; }
+  base::Vec2 to_user(const base::Vec2& point) const { return (point + centre_) + corner_; }
+  base::Vec2 origin() const { return corner_ + centre_; } // in the user's coordinates, m
+
+private:
+  base::Vec2 corner_{0, 0}; // the plan's first
+  base::Vec2 centre_{0, 0}; // seen from there
+};
+Plan to_local(const Plan& plan, const LocalFrame& frame);
+
 double area(const Plan& plan);      // m2
 double perimeter(const Plan& plan); // m
 

@@ -99,30 +99,13 @@ std::string good_state(const StageFiles& files) {
 }
 
 std::string changed_keys(const std::string& before, const std::string& after) {
-  const auto values = [](const std::string& text) {
-    std::vector<yaml::Problem> ignored;
-    const yaml::Node tree = yaml::parse_yaml(text, "stage.yaml", ignored);
-    std::map<std::string, std::string> by_path;
-    for (const auto& [path, leaf] : yaml::leaves(tree)) {
-      if (!path.starts_with("origin.") && path != "name") by_path[path] = leaf->text;
-    }
-    return by_path;
-  };
-  const auto then = values(before), now = values(after);
-  std::vector<std::string> changes;
-  for (const auto& [path, value] : now) {
-    const auto old = then.find(path);
-    if (old == then.end()) {
-      changes.push_back(fmt::format("{} {} is new", path, value));
-    } else if (old->second != value) {
-      changes.push_back(fmt::format("{} {} -> {}", path, old->second, value));
-    }
-  }
-  for (const auto& [path, value] : then) {
-    if (!now.contains(path)) changes.push_back(fmt::format("{} {} is gone", path, value));
-  }
+  std::vector<yaml::Problem> ignored;
+  std::vector<yaml::Difference> changes = yaml::differences(yaml::parse_yaml(before, "stage.yaml", ignored),
+                                                            yaml::parse_yaml(after, "stage.yaml", ignored));
+  std::erase_if(changes,
+                [](const yaml::Difference& one) { return one.path.starts_with("origin.") || one.path == "name"; });
   if (changes.empty()) return {};
-  const std::string first = changes.front();
+  const std::string first = to_string(changes.front());
   return changes.size() == 1 ? first : fmt::format("{}; and {} more", first, changes.size() - 1);
 }
 

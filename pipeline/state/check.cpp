@@ -2,8 +2,11 @@
 #include "pipeline/state/check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <set>
+#include <span>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -20,6 +23,29 @@ std::string fault_in_numbers(const std::vector<Index>& nodes, std::size_t node_c
   const auto found = std::find_if(nodes.begin(), nodes.end(), outside);
   if (found == nodes.end()) return {};
   return fmt::format("{} names node {}, but there are {} nodes", whose, *found, node_count);
+}
+
+// The first value that is none, with its number; empty: all are finite.
+std::string fault_in_values(std::span<const double> values, const std::string& whose) {
+  const auto found = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  if (found == values.end()) return {};
+  return fmt::format("{}: value {} is {}", whose, found - values.begin(), *found);
+}
+
+// A single value that must be finite and at least `least`, or (`above`) more.
+struct Bounded {
+  const char* what;
+  double value;
+  double least = -std::numeric_limits<double>::infinity();
+  bool above = false;
+};
+
+std::string fault_in_bounds(std::initializer_list<Bounded> all, const std::string& whose) {
+  for (const auto& [what, value, least, above] : all) {
+    if (std::isfinite(value) && (above ? value > least : value >= least)) continue;
+    return fmt::format("{}: {} is {}", whose, what, value);
+  }
+  return {};
 }
 
 std::string fault_in_mesh(const State& state) {
@@ -39,6 +65,11 @@ std::string fault_in_mesh(const State& state) {
   }
   for (const geometry::Edge& edge : mesh.edges) {
     std::string fault = fault_in_numbers(edge.nodes, mesh.nodes.size(), "edge " + edge.name);
+    if (!fault.empty()) return fault;
+  }
+  const double* first = mesh.nodes.empty() ? nullptr : mesh.nodes.front().data();
+  for (std::string fault : {fault_in_values({first, 3 * mesh.nodes.size()}, "the positions of the nodes"),
+                            fault_in_values({state.origin.data(), 3}, "the origin")}) {
     if (!fault.empty()) return fault;
   }
   if (state.fixed.size() != 3 * mesh.nodes.size()) {
@@ -81,6 +112,42 @@ std::string fault_in_strips(const State& state, const Block& block, const Foil& 
   return {};
 }
 
+std::string fault_in_foil_values(const Foil& foil, const std::string& whose) {
+  for (std::string fault :
+       {fault_in_bounds({{"thickness", foil.thickness, 0, true}, {"warp angle", foil.warp_angle}}, whose),
+        fault_in_values(foil.reference, whose + ": reference"),
+        fault_in_values(foil.predeformation, whose + ": predeformation"),
+        fault_in_values(foil.prestress, whose + ": prestress"), fault_in_values(foil.history, whose + ": history")}) {
+    if (!fault.empty()) return fault;
+  }
+  for (std::size_t i = 0; i + 2 < foil.prestress.size(); i += 3) { // its smaller principal value
+    const double mean = (foil.prestress[i] + foil.prestress[i + 1]) / 2;
+    const double radius = std::hypot((foil.prestress[i] - foil.prestress[i + 1]) / 2, foil.prestress[i + 2]);
+    if (mean - radius < 0) return fmt::format("{}: the prestress of Gauss point {} is a compression", whose, i / 3);
+  }
+  return {};
+}
+
+// A seam joins its two strips: each of its nodes belongs to an element of both.
+std::string fault_in_seams(const State& state, const Block& block, const Foil& foil) {
+  if (foil.seams.empty()) return {};
+  const auto each = static_cast<std::size_t>(geometry::nodes_per_element(state.mesh.element));
+  std::set<std::pair<Index, Index>> strip_and_node;
+  for (std::size_t i = 0; i < block.connectivity.size(); ++i) {
+    strip_and_node.emplace(foil.strip_of_element[i / each], block.connectivity[i]);
+  }
+  for (const Seam& seam : foil.seams) {
+    for (const Index side : {seam.left, seam.right}) {
+      for (const Index node : seam.nodes) {
+        if (strip_and_node.contains({side, node})) continue;
+        return fmt::format("seam {} of foil {}: its node {} is not in the strip {}", seam.name, block.name, node,
+                           foil.strips[static_cast<std::size_t>(side)]);
+      }
+    }
+  }
+  return {};
+}
+
 std::string fault_in_foils(const State& state) {
   const geometry::Mesh& mesh = state.mesh;
   if (state.foils.size() != mesh.blocks.size()) {
@@ -99,6 +166,10 @@ std::string fault_in_foils(const State& state) {
          {wrong("reference", foil.reference, 3 * block.connectivity.size()),
           wrong("predeformation", foil.predeformation, 3 * points), wrong("prestress", foil.prestress, 3 * points),
           wrong("history", foil.history, foil.history_names.size() * points), fault_in_strips(state, block, foil)}) {
+      if (!fault.empty()) return fault;
+    }
+    if (block.kind == BlockKind::base) continue;
+    for (std::string fault : {fault_in_foil_values(foil, "foil " + block.name), fault_in_seams(state, block, foil)}) {
       if (!fault.empty()) return fault;
     }
   }
@@ -122,6 +193,14 @@ std::string fault_in_chambers(const State& state) {
       return fmt::format("chamber {} is connected to chamber {}, which has no air of its own", chamber.name, other);
     }
     if (chamber.law > GasLaw::volume) return fmt::format("chamber {} has an unknown gas law", chamber.name);
+    std::string fault = fault_in_bounds({{"dead volume", chamber.dead_volume, 0},
+                                         {"kappa", chamber.kappa, 0, true},
+                                         {"gauge pressure", chamber.gauge_pressure},
+                                         {"ambient pressure", chamber.ambient_pressure, 0},
+                                         {"temperature", chamber.temperature, 0, true},
+                                         {"volume", chamber.volume}},
+                                        "chamber " + chamber.name);
+    if (!fault.empty()) return fault;
   }
   return {};
 }
@@ -136,6 +215,14 @@ std::string fault_in_loads(const State& state) {
     }
     if (!load.dead.empty() && load.dead.size() != 3 * state.mesh.nodes.size()) {
       return fmt::format("{} has {} forces for {} nodes", whose, load.dead.size() / 3, state.mesh.nodes.size());
+    }
+    for (std::string fault :
+         {fault_in_bounds({{"pressure", load.pressure}}, whose), fault_in_values(load.dead, whose + ": forces")}) {
+      if (!fault.empty()) return fault;
+    }
+    for (const geometry::QuadraturePoint& point : load.points) {
+      std::string fault = fault_in_bounds({{"a place", point.xi + point.eta}, {"a weight", point.weight}}, whose);
+      if (!fault.empty()) return fault;
     }
     if (load.offset.empty() && load.points.empty()) continue;
     const Index elements = state.mesh.element_count(state.mesh.blocks[static_cast<std::size_t>(load.block)]);
@@ -175,7 +262,7 @@ std::string fault_in_field(const State& state, const Field& field) {
     return fmt::format("field {} is at an unknown place", field.name);
   }
   const std::size_t expected = places * static_cast<std::size_t>(field.components);
-  if (field.values.size() == expected) return {};
+  if (field.values.size() == expected) return {}; // where there is no value, NaN says so
   return fmt::format("field {} has {} values instead of {}", field.name, field.values.size(), expected);
 }
 

@@ -110,6 +110,7 @@ void write_grid(const Group& vtk, const State& state) {
 
   const Group whole = vtk.create("FieldData"); // for the eye in ParaView; reading takes them from /pneuma
   write_number(whole, "load_factor", state.provenance.load_factor, "1");
+  write_list(whole, "origin", std::vector<double>(state.origin.begin(), state.origin.end()), "m");
   if (!state.chambers.empty()) {
     write_list(whole, "gauge_pressure", column(state.chambers, &Chamber::gauge_pressure), "Pa");
     write_list(whole, "volume", column(state.chambers, &Chamber::volume), "m3");
@@ -450,6 +451,7 @@ std::string to_bytes(const State& state) {
     pneuma.set_attribute("schema", std::vector<std::int64_t>{schema_version});
     pneuma.set_attribute("element", geometry::name_of(state.mesh.element));
     pneuma.set_attribute("stress_rule", name_of(state.stress_rule));
+    write_list(pneuma, "origin", std::vector<double>(state.origin.begin(), state.origin.end()), "m");
     write_blocks(pneuma.create("blocks"), state.mesh);
     write_edges(pneuma.create("edges"), state.mesh);
     pneuma.write<std::uint8_t>("fixed", state.fixed, {state.mesh.nodes.size(), 3}, "1");
@@ -477,6 +479,7 @@ State from_bytes(const std::string& bytes) {
   state.stress_rule = stress_rule_of(pneuma.text_attribute("stress_rule"));
   require(state.stress_rule == StressRule::full || state.mesh.element == ElementType::Q9,
           "/pneuma/@stress_rule: reduced is for Q9 only");
+  state.origin = Vec3(pneuma.read<double>("origin", {3}).data());
   const std::vector<Index> connectivity = read_grid(vtk, state.mesh);
   read_blocks(pneuma.open("blocks"), state.mesh, connectivity);
   const std::vector<std::uint8_t> types(cell_count(state.mesh), vtk_cell_type(state.mesh.element));

@@ -15,7 +15,7 @@ using base::Index;
 using base::Vec3;
 
 // Version of the layout below and of the file; a file of another version is refused with a message.
-inline constexpr int schema_version = 4;
+inline constexpr int schema_version = 5;
 
 // Where a state comes from. Text only: nothing here takes part in computing.
 struct Provenance {
@@ -104,7 +104,8 @@ struct Field {
 // Everything one stage hands to the next: plain data, SI units.
 struct State {
   Provenance provenance;
-  geometry::Mesh mesh; // nodes: CURRENT positions
+  Vec3 origin{0, 0, 0}; // where the coordinates here begin, in those of the user, m: the plan's own centre
+  geometry::Mesh mesh;  // nodes: CURRENT positions
   geometry::StressRule stress_rule = geometry::StressRule::full;
   std::vector<Foil> foils;         // one per block
   std::vector<std::uint8_t> fixed; // [node][3], 1: this coordinate is held

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/state/state_file.h"
 
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
@@ -80,7 +81,9 @@ void write_state(const State& state, const fs::path& path) {
   try {
     bytes = to_bytes(state);
     bytes += seal_of(bytes);
-  } catch (const hdf5::Failure& failure) {
+  } catch (const std::invalid_argument& wrong) {
+    throw base::Error(base::ExitCode::bug, fmt::format("{}: not written: {}", path.string(), wrong.what()));
+  } catch (const hdf5::Failure& failure) { // in memory, so for want of it
     throw base::MachineError(fmt::format("`{}` cannot be written: {}; close other programs, or raise the limit of "
                                          "memory (ulimit -v)",
                                          path.string(), failure.what()));

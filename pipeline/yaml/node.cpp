@@ -160,6 +160,30 @@ std::vector<std::pair<std::string, const Node*>> leaves(const Node& node) {
   return found;
 }
 
+std::string to_string(const Difference& difference) {
+  const auto& [path, before, after] = difference;
+  if (!before) return fmt::format("{} {} is new", path, *after);
+  if (!after) return fmt::format("{} {} is gone", path, *before);
+  return fmt::format("{} {} -> {}", path, *before, *after);
+}
+
+std::vector<Difference> differences(const Node& before, const Node& after) {
+  std::map<std::string, std::string> then;
+  for (const auto& [path, leaf] : leaves(before)) then[path] = leaf->text;
+  std::vector<Difference> found;
+  for (const auto& [path, leaf] : leaves(after)) {
+    const auto old = then.find(path);
+    if (old == then.end()) {
+      found.push_back({path, std::nullopt, leaf->text});
+      continue;
+    }
+    if (old->second != leaf->text) found.push_back({path, old->second, leaf->text});
+    then.erase(old);
+  }
+  for (const auto& [path, text] : then) found.push_back({path, text, std::nullopt});
+  return found;
+}
+
 void replace_marks(Node& node, const std::map<std::string, Mark>& marks) {
   walk(node, "", [&](const std::string& path, Node& leaf) {
     if (const auto known = marks.find(path); known != marks.end()) leaf.mark = known->second;

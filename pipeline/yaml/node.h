@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,16 @@ std::string write_yaml(const Node& node);
 
 // Every scalar with its path of keys and list positions, "cushion.foils.0.thickness", in the order of the file.
 std::vector<std::pair<std::string, const Node*>> leaves(const Node& node);
+
+// A value that differs between two trees; none: it is not there.
+struct Difference {
+  std::string path;
+  std::optional<std::string> before, after;
+};
+std::string to_string(const Difference& difference); // "mesh.size 0.15 m -> 0.1 m", "mesh.size 0.1 m is new"
+
+// Those of `after` in its order, then what is gone.
+std::vector<Difference> differences(const Node& before, const Node& after);
 
 // Replaces the mark of each scalar (and of the map around it) whose path is in `marks`.
 void replace_marks(Node& node, const std::map<std::string, Mark>& marks);

@@ -27,8 +27,9 @@ namespace path = solver::path;
 constexpr double standard_gravity = 9.80665; // m/s2
 
 volatile std::sig_atomic_t interrupted = 0;
-extern "C" void note_interrupt(int) {
+extern "C" void note_interrupt(int number) {
   interrupted = 1;
+  std::signal(number, SIG_DFL); // a second one ends at once
 }
 
 void stop_if_interrupted() {
@@ -110,9 +111,8 @@ private:
   std::string contact_at(const assembly::Configuration& c) {
     const auto found = contact_check_.find(c.positions);
     if (!found) return "";
-    return fmt::format("contact at load factor {:.4g} at ({:.4g}, {:.4g}, {:.4g}) m between `{}` and `{}`",
-                       c.load_factor, found->gap.at.x(), found->gap.at.y(), found->gap.at.z(), found->upper,
-                       found->lower);
+    return fmt::format("contact at load factor {:.4g} at {} m between `{}` and `{}`", c.load_factor,
+                       place_text(start_, found->gap.at), found->upper, found->lower);
   }
 
   path::PathResult follow(assembly::Configuration& c) {
@@ -314,7 +314,7 @@ private:
     pipeline::state::write_state(state, *start_.outputs, start_.outputs->state_name());
     io_ += writing.seconds();
 
-    Summary summary;
+    Summary summary(origin_of(start_));
     summary.set("stage", start_.stage().run);
     summary.set("id", start_.stage().id);
     summary.set("converged", reached);

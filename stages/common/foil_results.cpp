@@ -259,7 +259,7 @@ void summarize(const FoilResults& r, Summary& summary) {
     summary.set(key + "max", extreme->max);
     summary.set(key + "min", extreme->min);
     summary.set(key + "max_gauss", extreme->max_gauss);
-    summary.set(key + "at", extreme->at);
+    summary.set_place(key + "at", extreme->at);
   }
 }
 

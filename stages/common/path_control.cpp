@@ -35,11 +35,12 @@ path::HeldDisplacement point_of(const Start& start, const workflow::Displacement
   const State& state = start.state;
   const geometry::Block& block = state.mesh.blocks[static_cast<std::size_t>(block_of(start, control.foil))];
   const std::string where = place(start.workflow, fmt::format("stages.{}.control.at.0", start.stage().id));
+  const base::Vec2 at = start.frame.to_user(*control.at);
   const std::optional<geometry::PlanPoint> point =
       geometry::point_over(state.mesh, block, state.mesh.nodes, *control.at);
   if (!point) {
     throw base::InputError(fmt::format("{}the point ({}, {}) m of the control does not lie on foil `{}`: move it",
-                                       where, number(control.at->x()), number(control.at->y()), control.foil));
+                                       where, number(at.x()), number(at.y()), control.foil));
   }
   const Vec3 direction = control.direction.value_or(start.workflow.site.up.normalized());
   path::HeldDisplacement held;
@@ -57,7 +58,7 @@ path::HeldDisplacement point_of(const Start& start, const workflow::Displacement
     throw base::InputError(
         fmt::format("{}the point ({}, {}) m of the control lies on the clamped edge of foil `{}` and "
                     "cannot move that way: take one inside",
-                    where, number(control.at->x()), number(control.at->y()), control.foil));
+                    where, number(at.x()), number(at.y()), control.foil));
   }
   return held;
 }

@@ -12,6 +12,8 @@
 #include "geometry/base/log.h"
 #include "pipeline/digest/digest.h"
 #include "pipeline/state/state_file.h"
+#include "pipeline/yaml/node.h"
+#include "stages/common/local.h"
 
 namespace pneuma::stages::common {
 
@@ -79,6 +81,20 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
 
 namespace {
 
+// What of the cushion and its materials the state was made with differs from what the stage's settings say; empty:
+// nothing.
+std::string other_cushion(const State& state, const Start& start) {
+  namespace yaml = pipeline::yaml;
+  std::vector<yaml::Problem> ignored;
+  for (const yaml::Difference& one : yaml::differences(yaml::parse_yaml(state.provenance.settings, "", ignored),
+                                                       yaml::parse_yaml(start.settings, "", ignored))) {
+    if (!one.path.starts_with("cushion.") && !one.path.starts_with("materials.")) continue;
+    return fmt::format("the state was made with `{}` {}, the settings say {}", one.path, one.before.value_or("(none)"),
+                       one.after.value_or("(none)"));
+  }
+  return {};
+}
+
 // Reads the input state and checks that it belongs to the stage.
 void read_input(Start& start) {
   const pipeline::workflow::StageSettings& stage = start.stage();
@@ -103,6 +119,8 @@ void read_input(Start& start) {
   for (std::size_t i = 0; same && i < cushion.chambers.size(); ++i)
     same = state.chambers[i].name == cushion.chambers[i].name;
   if (!same) refuse("the state holds other foils or chambers than the workflow");
+  const std::string other = other_cushion(state, start);
+  if (!other.empty()) refuse(other);
 }
 
 } // namespace
@@ -113,11 +131,13 @@ Start read_start(const char* kind, int argc, char** argv) {
   const bool needs_input = std::string(kind) != "mesh";
   start.arguments = read_arguments(start.program.c_str(), needs_input, argc, argv);
   start.workflow = pipeline::workflow::read_stage(start.arguments.config);
-  const pipeline::workflow::StageSettings& stage = start.stage();
-  if (stage.run != kind) {
+  if (const pipeline::workflow::StageSettings& stage = start.stage(); stage.run != kind) {
     throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
                                        start.arguments.config.string(), stage.run, start.program, kind));
   }
+  start.settings = pipeline::workflow::effective_settings(start.workflow, start.stage());
+  start.frame = geometry::LocalFrame(start.workflow.cushion.plan);
+  start.workflow = to_local(std::move(start.workflow), start.frame);
   check_laws(start.workflow.materials, start.workflow.site.temperature);
   if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
   if (needs_input && !start.arguments.in.empty()) read_input(start);
@@ -133,8 +153,21 @@ pipeline::state::Provenance provenance(const Start& start) {
   p.stage_id = start.stage().id;
   if (!start.arguments.in.empty()) p.inputs["state"] = pipeline::digest::sha256_of_file(start.arguments.in);
   // values only: where they stand in the user's file must not change the state
-  p.settings = pipeline::workflow::effective_settings(start.workflow, start.stage());
+  p.settings = start.settings;
   return p;
+}
+
+Vec3 origin_of(const Start& start) {
+  const base::Vec2 origin = start.frame.origin();
+  return {origin.x(), origin.y(), 0};
+}
+
+std::string place_text(const Start& start, const Vec3& local) {
+  const Vec3 origin = origin_of(start);
+  const auto text = [](double offset, double value) {
+    return offset == 0 ? fmt::format("{:.4g}", value) : fmt::format("{:.3f}", offset + value);
+  };
+  return fmt::format("({}, {}, {})", text(origin.x(), local.x()), text(origin.y(), local.y()), text(0, local.z()));
 }
 
 std::string number(double value) {

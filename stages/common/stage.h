@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "geometry/outline.h"
 #include "pipeline/files/outputs.h"
 #include "pipeline/state/state.h"
 #include "pipeline/workflow/settings.h"
@@ -33,6 +34,8 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
 struct Start {
   std::string program; // "pneuma-inflate"
   Arguments arguments;
+  std::string settings;                              // effective values as the user has them
+  geometry::LocalFrame frame;                        // of the plan; all that follows is in its coordinates
   Workflow workflow;                                 // one stage in it
   MaterialLaws laws;                                 // of the foils' materials; none for the mesh stage
   State state;                                       // of --in; empty for the mesh stage
@@ -44,6 +47,12 @@ struct Start {
 // Reads the command line, stage.yaml and the input state, and checks that they belong together: the stage is of this
 // kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
 Start read_start(const char* kind, int argc, char** argv);
+
+// Where the state's coordinates begin, in the user's, m.
+Vec3 origin_of(const Start& start);
+
+// A place of the state in the user's coordinates, for messages: "(1.5, 2, 0.3)", to a millimetre or four digits.
+std::string place_text(const Start& start, const Vec3& local);
 
 // Provenance of the state that this stage writes, all but its verdict.
 pipeline::state::Provenance provenance(const Start& start);

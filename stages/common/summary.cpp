@@ -13,6 +13,7 @@ namespace pneuma::stages::common {
 using Json = nlohmann::ordered_json;
 
 struct Summary::Data {
+  Vec3 origin;
   Json json = Json::object();
 
   Json& at(const std::string& path) {
@@ -28,7 +29,9 @@ struct Summary::Data {
   }
 };
 
-Summary::Summary() : data_(std::make_unique<Data>()) {}
+Summary::Summary(const Vec3& origin) : data_(std::make_unique<Data>()) {
+  data_->origin = origin;
+}
 Summary::~Summary() = default;
 
 void Summary::set(const std::string& path, double value) {
@@ -45,6 +48,9 @@ void Summary::set(const std::string& path, const std::string& value) {
 }
 void Summary::set(const std::string& path, const Vec3& value) {
   data_->at(path) = {value.x(), value.y(), value.z()};
+}
+void Summary::set_place(const std::string& path, const Vec3& local) {
+  set(path, Vec3(data_->origin + local));
 }
 void Summary::append(const std::string& path, const std::string& value) {
   Json& list = data_->at(path);

@@ -16,7 +16,7 @@ using base::Vec3;
 // summary.json: the result keys of the workflow contract, SI units. A key that was not computed is absent.
 class Summary {
 public:
-  Summary();
+  explicit Summary(const Vec3& origin); // of the state's coordinates, in those of the user
   ~Summary();
   Summary(const Summary&) = delete;
   Summary& operator=(const Summary&) = delete;
@@ -29,6 +29,7 @@ public:
   void set(const std::string& path, const std::string& value);
   void set(const std::string& path, const char* value) { set(path, std::string(value)); }
   void set(const std::string& path, const Vec3& value);
+  void set_place(const std::string& path, const Vec3& local);     // told in the user's coordinates
   void append(const std::string& path, const std::string& value); // to a list of texts
 
   // Throws MachineError.

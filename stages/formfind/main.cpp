@@ -73,7 +73,7 @@ int run(int argc, char** argv) {
     forms[b] = formfinding::find_form(state.mesh, state.fixed, flat, targets[b], options);
   });
 
-  common::Summary summary;
+  common::Summary summary(common::origin_of(start));
   common::History history(*start.outputs);
   int updates = 0;
   int factorizations = 0;

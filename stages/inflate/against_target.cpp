@@ -72,7 +72,7 @@ void report_against_target(const State& target, const State& end, const std::vec
         geometry::normal_deviation(target.mesh, target.mesh.blocks[b], target.mesh.nodes, end.mesh.nodes);
     summary.set("shape_deviation." + results.name + ".max", shape.max);
     summary.set("shape_deviation." + results.name + ".mean", shape.mean);
-    summary.set("shape_deviation." + results.name + ".at", shape.at);
+    summary.set_place("shape_deviation." + results.name + ".at", shape.at);
     std::string line = fmt::format("{}: {:.2f} mm from the target form at most, {:.2f} mm in the mean", results.name,
                                    1e3 * shape.max, 1e3 * shape.mean);
     if (!foil.prestress.empty()) {

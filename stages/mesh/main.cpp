@@ -43,6 +43,7 @@ common::State make_state(const common::Start& start) {
   } catch (const base::InputError& error) {
     throw base::InputError(common::place(w, settings.size ? "mesh.size" : "mesh.divisions") + error.what());
   }
+  state.origin = common::origin_of(start);
   state.stress_rule = settings.stress_rule;
   for (const workflow::FoilSettings& foil : w.cushion.foils) {
     pipeline::state::Foil data;
@@ -95,7 +96,7 @@ int run(int argc, char** argv) {
   const common::Clock clock;
   const common::Start start = common::read_start("mesh", argc, argv);
   const common::State state = make_state(start);
-  common::Summary summary;
+  common::Summary summary(common::origin_of(start));
   Index elements = 0;
   for (const geometry::Block& block : state.mesh.blocks) elements += state.mesh.element_count(block);
   std::string errors;

@@ -210,7 +210,7 @@ int run(int argc, char** argv) {
   solver::linear::prepare_blas(start.arguments.threads);
   Welded welded = cut_and_flatten(start, settings, chosen);
 
-  common::Summary summary;
+  common::Summary summary(common::origin_of(start));
   summary.set("stage", "pattern");
   summary.set("id", start.stage().id);
   summary.set("converged", true);

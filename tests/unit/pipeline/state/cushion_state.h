@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <set>
 
 #include "pipeline/state/state.h"
 
@@ -48,6 +51,19 @@ inline std::vector<std::vector<std::pair<int, int>>> grid_elements(geometry::Ele
     }
   }
   return elements;
+}
+
+// Nodes of a block that lie in elements of strip 0 and of strip 1.
+inline std::vector<Index> nodes_of_both(const geometry::Block& block, const std::vector<Index>& strip_of_element) {
+  const std::size_t each = block.connectivity.size() / strip_of_element.size();
+  std::set<Index> strips[2];
+  for (std::size_t i = 0; i < block.connectivity.size(); ++i) {
+    strips[strip_of_element[i / each]].insert(block.connectivity[i]);
+  }
+  std::vector<Index> both;
+  std::set_intersection(strips[0].begin(), strips[0].end(), strips[1].begin(), strips[1].end(),
+                        std::back_inserter(both));
+  return both;
 }
 
 // Two foils and a chamber over a rectangle of 6 m x 3 m with n x m squares: sag 0.6 m upwards and 0.4 m downwards, the
@@ -103,6 +119,7 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
     foil.reference = numbers(3 * block.connectivity.size());
     foil.predeformation = numbers(3 * gauss);
     foil.prestress = numbers(3 * gauss);
+    for (std::size_t i = 0; i < foil.prestress.size(); ++i) foil.prestress[i] += i % 3 == 2 ? 0 : 100; // a tension
     foil.history_names = {"plastic_strain_11", "plastic_strain_22"};
     foil.history = numbers(2 * gauss);
     // the weather side alone is welded: its elements of the left and the right half, the seam where they meet
@@ -111,8 +128,8 @@ inline State cushion_state(geometry::ElementType type, int n, int m) {
       for (const auto& element : elements) {
         foil.strip_of_element.push_back(2 * element[0].first < columns - 1 ? 0 : 1);
       }
-      foil.seams = {{"S1", 0, 1, {block.connectivity[0], block.connectivity[1], block.connectivity[2]}},
-                    {"S2", 1, 0, {block.connectivity[1], block.connectivity[0]}}};
+      const std::vector<Index> both = nodes_of_both(block, foil.strip_of_element);
+      if (!both.empty()) foil.seams = {{"S1", 0, 1, both}, {"S2", 1, 0, {both[1], both[0]}}};
     }
     state.foils.push_back(foil);
   }

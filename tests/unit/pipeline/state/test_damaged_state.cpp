@@ -117,7 +117,7 @@ TEST(DamagedState, WithSeamsLongerThanTheirNodesIsRefused) {
   for (const std::int64_t other : {1, 3, 1000, -2}) {
     const std::int64_t wrong[] = {3, other};
     const std::string bytes =
-        replaced(to_bytes(cushion_state(ElementType::T3, 2, 1)), {reinterpret_cast<const char*>(counts), sizeof counts},
+        replaced(to_bytes(cushion_state(ElementType::T6, 2, 1)), {reinterpret_cast<const char*>(counts), sizeof counts},
                  {reinterpret_cast<const char*>(wrong), sizeof wrong});
     EXPECT_THAT(verdict_on(bytes), HasSubstr("/pneuma/foils/0000/seams/count: does not sum to the nodes"));
   }

@@ -76,7 +76,7 @@ TEST(StateFile, KeepsEveryBitOfOddNumbers) {
   state.fields[1].values[1] = -0.0;
   state.fields[1].values[2] = std::numeric_limits<double>::denorm_min();
   state.fields[1].values[3] = -std::numeric_limits<double>::infinity();
-  state.mesh.nodes[0].y() = nan_with_payload;
+  state.mesh.nodes[0].y() = std::numeric_limits<double>::denorm_min();
   state.provenance.load_factor = nan_with_payload;
   write_state(state, folder / "a.hdf");
   expect_same(read_state(folder / "a.hdf"), state);
@@ -231,6 +231,25 @@ const Wrong wrong_states[] = {
      "seam S1 of foil upper names node 1000"},
     {"SeamWithoutStrips", [](State& s) { s.foils[1].seams = s.foils[0].seams; },
      "seam S1 of foil lower names strip 0, but there are 0"},
+    {"SeamBesideItsStrips", [](State& s) { s.foils[0].seams[0].nodes[0] = s.mesh.blocks[0].connectivity[0]; },
+     "seam S1 of foil upper: its node 0 is not in the strip upper-2"},
+    {"PositionThatIsNone", [](State& s) { s.mesh.nodes[2].y() = std::nan(""); },
+     "the positions of the nodes: value 7 is nan"},
+    {"OriginThatIsNone", [](State& s) { s.origin.x() = 1.0 / 0.0; }, "the origin: value 0 is inf"},
+    {"NegativeThickness", [](State& s) { s.foils[1].thickness = -1e-4; }, "foil lower: thickness is -0.0001"},
+    {"NoThickness", [](State& s) { s.foils[1].thickness = 0; }, "foil lower: thickness is 0"},
+    {"EndlessThickness", [](State& s) { s.foils[1].thickness = 1.0 / 0.0; }, "foil lower: thickness is inf"},
+    {"ReferenceThatIsNone", [](State& s) { s.foils[0].reference[4] = std::nan(""); },
+     "foil upper: reference: value 4 is nan"},
+    {"HistoryThatIsNone", [](State& s) { s.foils[0].history[1] = -1.0 / 0.0; }, "foil upper: history: value 1 is -inf"},
+    {"PrestressOfCompression", [](State& s) { s.foils[0].prestress[3] = -5; },
+     "foil upper: the prestress of Gauss point 1 is a compression"},
+    {"PressureThatIsNone", [](State& s) { s.chambers[0].gauge_pressure = std::nan(""); },
+     "chamber main: gauge pressure is nan"},
+    {"NegativeAmbientPressure", [](State& s) { s.chambers[0].ambient_pressure = -1; },
+     "chamber main: ambient pressure is -1"},
+    {"NoTemperature", [](State& s) { s.chambers[0].temperature = 0; }, "chamber main: temperature is 0"},
+    {"LoadThatIsNone", [](State& s) { s.loads[2].dead[1] = std::nan(""); }, "load snow: forces: value 1 is nan"},
     {"BaseOfStrips",
      [](State& s) {
        s.mesh.blocks[1].kind = geometry::BlockKind::base;
