@@ -21,10 +21,10 @@ void open_standard_streams() {
 
 } // namespace
 
-int guarded_main(const char* program, int (*body)(int, char**), int argc, char** argv) {
+int guarded_main(const char* program, const std::function<int()>& body) {
   open_standard_streams();
   try {
-    return body(argc, argv);
+    return body();
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return static_cast<int>(error.code());

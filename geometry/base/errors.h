@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -51,6 +52,6 @@ struct MachineError : Error {
 };
 
 // Runs `body`; prints what went wrong to standard error and returns the exit code. The boundary of every program.
-int guarded_main(const char* program, int (*body)(int, char**), int argc, char** argv);
+int guarded_main(const char* program, const std::function<int()>& body);
 
 } // namespace pneuma::geometry::base

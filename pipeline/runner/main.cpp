@@ -140,5 +140,5 @@ int body(int argc, char** argv) {
 } // namespace pneuma::pipeline::runner
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma", &pneuma::pipeline::runner::body, argc, argv);
+  return pneuma::base::guarded_main("pneuma", [&] { return pneuma::pipeline::runner::body(argc, argv); });
 }

@@ -157,6 +157,22 @@ pipeline::state::Provenance provenance(const Start& start) {
   return p;
 }
 
+int stage_main(const char* kind, void (*body)(const Start&), int argc, char** argv) {
+  return base::guarded_main(fmt::format("pneuma-{}", kind).c_str(), [&] {
+    const Start start = read_start(kind, argc, argv);
+    try {
+      body(start);
+    } catch (const base::GeometryError& error) {
+      const Vec3 origin = origin_of(start);
+      if (origin.isZero(0)) throw;
+      throw base::GeometryError(
+          fmt::format("{}\n(places are told from the plan's centre, which lies at ({:.3f}, {:.3f}) m)", error.what(),
+                      origin.x(), origin.y()));
+    }
+    return 0;
+  });
+}
+
 Vec3 origin_of(const Start& start) {
   const base::Vec2 origin = start.frame.origin();
   return {origin.x(), origin.y(), 0};

@@ -48,6 +48,10 @@ struct Start {
 // kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
 Start read_start(const char* kind, int argc, char** argv);
 
+// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code. Places in
+// errors of shapes are those of the state: where these differ from the user's, that is said.
+int stage_main(const char* kind, void (*body)(const Start& start), int argc, char** argv);
+
 // Where the state's coordinates begin, in the user's, m.
 Vec3 origin_of(const Start& start);
 

@@ -49,10 +49,9 @@ std::string diagnose(const common::Start& start, const formfinding::Target& targ
                             common::number(limit->needed_tension));
 }
 
-int run(int argc, char** argv) {
+void run(const common::Start& start) {
   const common::Clock clock;
-  const common::Start start = common::read_start("formfind", argc, argv);
-  if (start.arguments.check) return 0;
+  if (start.arguments.check) return;
   solver::linear::prepare_blas(start.arguments.threads);
   const auto& settings = std::get<workflow::FormfindSettings>(start.stage().settings);
   formfinding::Options options;
@@ -210,7 +209,7 @@ int run(int argc, char** argv) {
   summary.append("modelled", "a film of uniform, isotropic prestress under uniform pressure");
   summary.append("not_modelled", "weight of the foils, elasticity, cutting patterns");
   summary.write(*start.outputs);
-  if (converged) return 0;
+  if (converged) return;
   const std::string pressure_key =
       state.chambers.empty() ? "" : "stages." + start.stage().id + ".gauge_pressure." + state.chambers[0].name;
   throw base::Error(base::ExitCode::no_equilibrium, common::place(start.workflow, pressure_key) + verdict);
@@ -221,5 +220,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::formfind
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-formfind", pneuma::stages::formfind::run, argc, argv);
+  return pneuma::stages::common::stage_main("formfind", pneuma::stages::formfind::run, argc, argv);
 }

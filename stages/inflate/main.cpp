@@ -39,9 +39,8 @@ std::vector<double> predeformation(const common::Start& start, std::size_t foil,
   return result;
 }
 
-int run(int argc, char** argv) {
-  const common::Start start = common::read_start("inflate", argc, argv);
-  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
+void run(const common::Start& start) {
+  if (start.arguments.in.empty()) return; // --check: all there is to check without a state
   const auto& settings = std::get<workflow::InflateSettings>(start.stage().settings);
   common::Drive drive;
   drive.state = start.state;
@@ -110,7 +109,6 @@ int run(int argc, char** argv) {
     };
   }
   common::run_equilibrium(start, std::move(drive));
-  return 0;
 }
 
 } // namespace
@@ -118,5 +116,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::inflate
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-inflate", pneuma::stages::inflate::run, argc, argv);
+  return pneuma::stages::common::stage_main("inflate", pneuma::stages::inflate::run, argc, argv);
 }

@@ -274,5 +274,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::material
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-material", pneuma::stages::material::run, argc, argv);
+  return pneuma::base::guarded_main("pneuma-material", [&] { return pneuma::stages::material::run(argc, argv); });
 }

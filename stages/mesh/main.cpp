@@ -92,9 +92,8 @@ common::State make_state(const common::Start& start) {
   return state;
 }
 
-int run(int argc, char** argv) {
+void run(const common::Start& start) {
   const common::Clock clock;
-  const common::Start start = common::read_start("mesh", argc, argv);
   const common::State state = make_state(start);
   common::Summary summary(common::origin_of(start));
   Index elements = 0;
@@ -109,7 +108,7 @@ int run(int argc, char** argv) {
     }
   }
   if (!errors.empty()) throw base::GeometryError("the mesh is not fit for computing:\n" + errors);
-  if (start.arguments.check) return 0;
+  if (start.arguments.check) return;
   base::say(fmt::format("{} nodes, {} elements {} in {} blocks", state.mesh.nodes.size(), elements,
                         geometry::name_of(state.mesh.element), state.mesh.blocks.size()));
   pipeline::state::write_state(state, *start.outputs, start.outputs->state_name());
@@ -121,7 +120,6 @@ int run(int argc, char** argv) {
   summary.set("timing.total", clock.seconds());
   summary.set("memory_peak", common::peak_memory());
   summary.write(*start.outputs);
-  return 0;
 }
 
 } // namespace
@@ -129,5 +127,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::mesh
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-mesh", pneuma::stages::mesh::run, argc, argv);
+  return pneuma::stages::common::stage_main("mesh", pneuma::stages::mesh::run, argc, argv);
 }

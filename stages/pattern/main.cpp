@@ -199,14 +199,13 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
   });
 }
 
-int run(int argc, char** argv) {
+void run(const common::Start& start) {
   const common::Clock clock;
-  const common::Start start = common::read_start("pattern", argc, argv);
-  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
+  if (start.arguments.in.empty()) return; // --check: all there is to check without a state
   const auto& settings = std::get<workflow::PatternSettings>(start.stage().settings);
   const std::vector<std::size_t> chosen = foils_to_cut(start, settings);
   for (const std::size_t b : chosen) wanted_of(start, settings, b, 0); // that the foils can carry their prestress
-  if (start.arguments.check) return 0;
+  if (start.arguments.check) return;
   solver::linear::prepare_blas(start.arguments.threads);
   Welded welded = cut_and_flatten(start, settings, chosen);
 
@@ -256,7 +255,6 @@ int run(int argc, char** argv) {
   summary.append("not_modelled", "double thickness of the welds");
   summary.append("not_modelled", "curvature of the frame's clamps");
   summary.write(*start.outputs);
-  return 0;
 }
 
 } // namespace
@@ -264,5 +262,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::pattern
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-pattern", pneuma::stages::pattern::run, argc, argv);
+  return pneuma::stages::common::stage_main("pattern", pneuma::stages::pattern::run, argc, argv);
 }

@@ -22,5 +22,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::picture
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-picture", pneuma::stages::picture::run, argc, argv);
+  return pneuma::base::guarded_main("pneuma-picture", [&] { return pneuma::stages::picture::run(argc, argv); });
 }

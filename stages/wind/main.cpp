@@ -154,9 +154,8 @@ solver::chamber::Gas gas_of(const workflow::Gas& gas, const pipeline::state::Cha
   return solver::chamber::Regulated{chamber.gauge_pressure, regulated.gauge_pressure.value_or(chamber.gauge_pressure)};
 }
 
-int run(int argc, char** argv) {
-  const common::Start start = common::read_start("wind", argc, argv);
-  if (start.arguments.in.empty()) return 0; // --check: all there is to check without a state
+void run(const common::Start& start) {
+  if (start.arguments.in.empty()) return; // --check: all there is to check without a state
   const auto& settings = std::get<workflow::WindSettings>(start.stage().settings);
   common::Drive drive;
   drive.state = start.state;
@@ -201,7 +200,6 @@ int run(int argc, char** argv) {
     }
   }
   common::run_equilibrium(start, std::move(drive));
-  return 0;
 }
 
 } // namespace
@@ -209,5 +207,5 @@ int run(int argc, char** argv) {
 } // namespace pneuma::stages::wind
 
 int main(int argc, char** argv) {
-  return pneuma::base::guarded_main("pneuma-wind", pneuma::stages::wind::run, argc, argv);
+  return pneuma::stages::common::stage_main("wind", pneuma::stages::wind::run, argc, argv);
 }
