@@ -18,12 +18,11 @@ namespace {
 
 // A form of what a function of the reader reads.
 template <class T, class Found, class Write>
-Form<T> scalar_form(Type type, std::optional<Found> (Reader::*read)(const Option&, const Node&, const std::string&),
-                    const Write& write) {
+Form<T> scalar_form(Type type, std::optional<Found> (Reader::*read)(const Source&), const Write& write) {
   return form_of<T>(
       option_of(type),
       [read](const Source& source, T& value) {
-        const std::optional<Found> found = (source.reader.*read)(source.option, source.node, source.path);
+        const std::optional<Found> found = (source.reader.*read)(source);
         if (found) value = static_cast<T>(*found);
         return found.has_value();
       },

@@ -17,14 +17,6 @@
 
 namespace pneuma::pipeline::schema {
 
-// What is read: a node at its path, as an option describes it.
-struct Source {
-  Reader& reader;
-  const Option& option;
-  const Node& node;
-  const std::string& path;
-};
-
 // How values of one type, which only its Form knows, are read and written.
 struct Access {
   std::function<bool(const Source&, void* value)> read;        // false: a problem was reported
@@ -155,7 +147,7 @@ Form<T> choice(const std::vector<Word<T>>& words) {
   return form_of<T>(
       option_of(Type::choice, std::move(members)),
       [words](const Source& source, T& value) {
-        const std::optional<std::size_t> found = source.reader.choice(source.option, source.node, source.path);
+        const std::optional<std::size_t> found = source.reader.choice(source);
         if (found) value = *words[*found].value;
         return found.has_value();
       },
@@ -171,7 +163,7 @@ Form<std::vector<T>> list(const Form<T>& item) {
   return form_of<std::vector<T>>(
       option_of(Type::list, {item.option}),
       [item](const Source& source, std::vector<T>& value) {
-        bool complete = source.reader.items(source.option, source.node, source.path);
+        bool complete = source.reader.items(source);
         value.clear();
         for (std::size_t i = 0; i < source.node.items.size(); ++i) {
           T& one = value.emplace_back();
@@ -219,7 +211,7 @@ Form<std::map<std::string, T>> table(const Form<T>& item, const std::string& kin
   return form_of<std::map<std::string, T>>(
       option_of(Type::table, {item.option}),
       [item, kind, other](const Source& source, std::map<std::string, T>& value) {
-        bool complete = source.reader.entries(source.option, source.node, source.path);
+        bool complete = source.reader.entries(source);
         for (const Entry& entry : source.node.entries) {
           if (!kind.empty() && entry.key != other) source.reader.refer(kind, entry.key, entry.mark);
           T one{};
@@ -245,7 +237,7 @@ Form<T> either(const std::vector<Form<T>>& kinds, const std::function<std::size_
   return form_of<T>(
       option_of(Type::either, std::move(members)),
       [kinds](const Source& source, T& value) {
-        const std::optional<std::size_t> found = source.reader.either(source.option, source.node, source.path);
+        const std::optional<std::size_t> found = source.reader.either(source);
         return found && kinds[*found].read(source.reader, source.node, source.path, value);
       },
       [kinds, which](const T& value) { return kinds[which(value)].write(value); });

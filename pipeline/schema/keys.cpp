@@ -40,9 +40,9 @@ Option AnyKeys::option() const {
   return out;
 }
 
-bool AnyKeys::read(const Source& source, const Option* variant, void* owner) const {
+bool AnyKeys::read(const Source& source, void* owner) const {
   Reader& reader = source.reader;
-  bool complete = reader.keys(source.option, source.node, source.path, variant);
+  bool complete = reader.keys(source);
   for (const Key& key : list) {
     if (!key.access) continue;
     const std::string path = below(source.path, key.option.name);
@@ -51,8 +51,8 @@ bool AnyKeys::read(const Source& source, const Option* variant, void* owner) con
       reader.spoil(path);
       complete = false;
     } else if (key.option.default_node && key.option.tag.empty()) {
-      const Reader::Default guard(reader);
-      key.access->read({reader, key.option, *key.option.default_node, path}, key.target(owner));
+      Reader apart; // a default has no place in the file
+      key.access->read({apart, key.option, *key.option.default_node, path}, key.target(owner));
     }
   }
   return complete && judge(reader, owner, source.path);
@@ -93,11 +93,11 @@ AnyForm tagged_form(const std::string& tag, std::vector<Alternative> alternative
   form.option.tag = tag;
   const auto kinds = std::make_shared<const std::vector<Alternative>>(std::move(alternatives));
   const auto read = [kinds](const Source& source, void* value) {
-    const std::optional<std::size_t> found = source.reader.alternative(source.option, source.node, source.path);
+    const std::optional<std::size_t> found = source.reader.alternative(source);
     if (!found) return false;
     const Alternative& one = (*kinds)[*found];
     one.begin(value);
-    return one.keys.read({source.reader, source.option.members()[*found], source.node, source.path}, &source.option,
+    return one.keys.read({source.reader, source.option.members()[*found], source.node, source.path, &source.option},
                          value);
   };
   const auto write = [kinds, tag](const void* value) {

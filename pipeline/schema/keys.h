@@ -75,8 +75,7 @@ public:
 
   const std::string& called() const { return named_.name; }
   Option option() const;
-  // `variant`: of which these are one of several.
-  bool read(const Source& source, const Option* variant, void* owner) const;
+  bool read(const Source& source, void* owner) const;
   Node write(const void* owner) const;
 
 private:
@@ -185,7 +184,7 @@ template <class T>
 Form<T> group(const Keys<T>& keys) {
   const auto shared = std::make_shared<const Keys<T>>(keys);
   return form_of<T>(
-      keys.option(), [shared](const Source& source, T& value) { return shared->read(source, nullptr, &value); },
+      keys.option(), [shared](const Source& source, T& value) { return shared->read(source, &value); },
       [shared](const T& value) { return shared->write(&value); });
 }
 

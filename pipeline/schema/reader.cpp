@@ -56,10 +56,6 @@ const Node& Reader::keep(Node tree) {
   return trees_.back();
 }
 
-void Reader::note(const std::string& path, const Node& node, const Mark* key, std::optional<std::size_t> position) {
-  if (!reads_default_) places_.insert_or_assign(path, Place{&node, key, position});
-}
-
 const Reader::Place* Reader::nearest_place(std::string path) const {
   for (;; path = around(path)) {
     if (const auto found = places_.find(path); found != places_.end()) return &found->second;
@@ -141,14 +137,20 @@ void Reader::check_references() {
   uses_.clear();
 }
 
-bool Reader::not_yet(const Mark& mark, const std::string& what, const std::string& instead) {
+std::nullopt_t Reader::not_yet(const Mark& mark, const std::string& what, const std::string& instead) {
   fail(mark, fmt::format("{} is not available yet; {}", what, instead));
-  return false;
+  return std::nullopt;
 }
 
-bool Reader::fits(const Option& option, const Node& node, const std::string& path) {
-  if (node.kind == kind_of(option)) return true;
-  fail(node.mark, fmt::format("{} must be {}, not {}", title(path), expected(option), written_as(node)));
+std::nullopt_t Reader::misfit(const Source& source, const std::string& wanted, const std::string& hint) {
+  fail(source.node.mark,
+       fmt::format("{} must be {}, not {}{}", title(source.path), wanted, written_as(source.node), hint));
+  return std::nullopt;
+}
+
+bool Reader::fits(const Source& source) {
+  if (source.node.kind == kind_of(source.option)) return true;
+  misfit(source, expected(source.option));
   return false;
 }
 
@@ -165,25 +167,26 @@ bool Reader::name(const std::string& name, const Mark& mark) {
   return fine && !is_long;
 }
 
-std::optional<std::string> Reader::text(const Option& option, const Node& node, const std::string& path) {
-  if (!fits(option, node, path) || (option.type == Type::name && !name(node.text, node.mark))) return std::nullopt;
+std::optional<std::string> Reader::text(const Source& source) {
+  const Node& node = source.node;
+  if (!fits(source) || (source.option.type == Type::name && !name(node.text, node.mark))) return std::nullopt;
   return node.text;
 }
 
-std::optional<bool> Reader::flag(const Option& option, const Node& node, const std::string& path) {
-  if (!fits(option, node, path)) return std::nullopt;
+std::optional<bool> Reader::flag(const Source& source) {
+  if (!fits(source)) return std::nullopt;
   for (const char* word : {"on", "true", "yes"}) {
-    if (node.text == word) return true;
+    if (source.node.text == word) return true;
   }
   for (const char* word : {"off", "false", "no"}) {
-    if (node.text == word) return false;
+    if (source.node.text == word) return false;
   }
-  fail(node.mark, fmt::format("{} must be on or off, not `{}`", title(path), node.text));
-  return std::nullopt;
+  return misfit(source, expected(source.option));
 }
 
-std::optional<double> Reader::number(const Option& option, const Node& node, const std::string& path) {
-  if (!fits(option, node, path)) return std::nullopt;
+std::optional<double> Reader::number(const Source& source) {
+  const auto& [reader, option, node, path, variant] = source;
+  if (!fits(source)) return std::nullopt;
   double value = 0;
   if (option.type == Type::quantity) {
     const Quantity read = parse_quantity(node.text, option.unit, option.example);
@@ -194,10 +197,7 @@ std::optional<double> Reader::number(const Option& option, const Node& node, con
     int whole = 0;
     const char* end = node.text.data() + node.text.size();
     const bool is_whole = std::from_chars(node.text.data(), end, whole).ptr == end;
-    if (!plain || (option.type == Type::integer && !is_whole)) {
-      fail(node.mark, fmt::format("{} must be {}, not `{}`", title(path), expected(option), node.text));
-      return std::nullopt;
-    }
+    if (!plain || (option.type == Type::integer && !is_whole)) return misfit(source, expected(option));
     value = *plain;
   }
   if (option.limits && !option.limits->holds(value)) {
@@ -212,37 +212,36 @@ std::optional<double> Reader::number(const Option& option, const Node& node, con
   return value;
 }
 
-std::optional<std::size_t> Reader::choice(const Option& option, const Node& node, const std::string& path) {
-  if (!fits(option, node, path)) return std::nullopt;
-  for (std::size_t i = 0; i < option.members().size(); ++i) {
-    const Option& allowed = option.members()[i];
-    if (allowed.name != node.text) continue;
-    if (allowed.not_yet.empty()) return i;
-    not_yet(node.mark, fmt::format("{}: `{}`", title(path), node.text), allowed.not_yet);
-    return std::nullopt;
+std::optional<std::size_t> Reader::choice(const Source& source) {
+  if (!fits(source)) return std::nullopt;
+  const std::vector<Option>& words = source.option.members();
+  const std::string& word = source.node.text;
+  const auto found = std::find_if(words.begin(), words.end(), [&](const Option& one) { return one.name == word; });
+  if (found == words.end()) {
+    return misfit(source, "one of: " + joined(available_names(words)), suggestion(word, names_of(words)));
   }
-  fail(node.mark,
-       fmt::format("{} must be one of: {}, not `{}`{}", title(path), joined(available_names(option.members())),
-                   node.text, suggestion(node.text, names_of(option.members()))));
-  return std::nullopt;
+  if (found->not_yet.empty()) return static_cast<std::size_t>(found - words.begin());
+  return not_yet(source.node.mark, fmt::format("{}: `{}`", title(source.path), word), found->not_yet);
 }
 
-bool Reader::items(const Option& list, const Node& node, const std::string& path) {
-  if (!fits(list, node, path)) return false;
+bool Reader::items(const Source& list) {
+  const auto& [reader, option, node, path, variant] = list;
+  if (!fits(list)) return false;
   const std::size_t count = node.items.size();
   for (std::size_t i = 0; i < count; ++i) note(below(path, std::to_string(i)), node.items[i], nullptr, i);
-  if (count >= list.min_items && count <= list.max_items) return true;
-  const bool few = count < list.min_items;
-  const char* bound = list.min_items == list.max_items ? "" : few ? "at least " : "at most ";
+  if (count >= option.min_items && count <= option.max_items) return true;
+  const bool few = count < option.min_items;
+  const char* bound = option.min_items == option.max_items ? "" : few ? "at least " : "at most ";
   fail(node.mark, fmt::format("{} must have {}{} entries, not {}", title(path), bound,
-                              few ? list.min_items : list.max_items, count));
+                              few ? option.min_items : option.max_items, count));
   return false;
 }
 
-bool Reader::entries(const Option& table, const Node& node, const std::string& path) {
-  if (!fits(table, node, path)) return false;
-  bool complete = node.entries.size() >= table.min_items;
-  if (!complete) fail(node.mark, fmt::format("{} is empty; it needs {}", title(path), expected(table)));
+bool Reader::entries(const Source& table) {
+  const auto& [reader, option, node, path, variant] = table;
+  if (!fits(table)) return false;
+  bool complete = node.entries.size() >= option.min_items;
+  if (!complete) fail(node.mark, fmt::format("{} is empty; it needs {}", title(path), expected(option)));
   for (const Entry& entry : node.entries) {
     note(below(path, entry.key), entry.value, &entry.mark);
     complete = name(entry.key, entry.mark) && complete;
@@ -251,19 +250,19 @@ bool Reader::entries(const Option& table, const Node& node, const std::string& p
 }
 
 // Of two kinds of scalars a choice comes first: what begins like a number is left to the other.
-std::optional<std::size_t> Reader::either(const Option& option, const Node& node, const std::string& path) {
-  const auto scalars = std::count_if(option.members().begin(), option.members().end(),
-                                     [](const Option& kind) { return kind_of(kind) == NodeKind::scalar; });
+std::optional<std::size_t> Reader::either(const Source& source) {
+  const std::vector<Option>& kinds = source.option.members();
+  const Node& node = source.node;
+  const auto scalars =
+      std::count_if(kinds.begin(), kinds.end(), [](const Option& kind) { return kind_of(kind) == NodeKind::scalar; });
   std::vector<std::string> words;
-  for (std::size_t i = 0; i < option.members().size(); ++i) {
-    const Option& kind = option.members()[i];
-    if (kind_of(kind) != node.kind) continue;
-    if (!kind.not_yet.empty()) {
-      not_yet(node.mark, fmt::format("{} as {}", title(path), written_as(node)), kind.not_yet);
-      return std::nullopt;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kind_of(kinds[i]) != node.kind) continue;
+    if (!kinds[i].not_yet.empty()) {
+      return not_yet(node.mark, fmt::format("{} as {}", title(source.path), written_as(node)), kinds[i].not_yet);
     }
-    if (kind.type == Type::choice) {
-      words = names_of(kind.members());
+    if (kinds[i].type == Type::choice) {
+      words = names_of(kinds[i].members());
       if (std::find(words.begin(), words.end(), node.text) == words.end()) {
         if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
         break;
@@ -271,45 +270,36 @@ std::optional<std::size_t> Reader::either(const Option& option, const Node& node
     }
     return i;
   }
-  fail(node.mark, fmt::format("{} must be {}, not {}{}", title(path), expected(option), written_as(node),
-                              suggestion(node.text, words)));
-  return std::nullopt;
+  return misfit(source, expected(source.option), suggestion(node.text, words));
 }
 
-std::optional<std::size_t> Reader::alternative(const Option& option, const Node& node, const std::string& path) {
-  if (!fits(option, node, path)) return std::nullopt;
-  const std::string allowed = joined(available_names(option.members()));
+// The key `tag` is a choice of the groups' names.
+std::optional<std::size_t> Reader::alternative(const Source& variant) {
+  const auto& [reader, option, node, path, outer] = variant;
+  if (!fits(variant)) return std::nullopt;
+  const std::vector<Option>& groups = option.members();
+  const Node by_default = scalar(option.default_value);
   const Node* tag = find(node, option.tag);
   if (tag == nullptr && option.default_value.empty()) {
-    fail(node.mark, fmt::format("{} lacks the key `{}`: one of {}", title(path), option.tag, allowed));
+    fail(node.mark,
+         fmt::format("{} lacks the key `{}`: one of {}", title(path), option.tag, joined(available_names(groups))));
     return std::nullopt;
   }
-  if (tag != nullptr && tag->kind != NodeKind::scalar) {
-    fail(tag->mark, fmt::format("`{}` must be one of: {}, not {}", option.tag, allowed, written_as(*tag)));
-    return std::nullopt;
-  }
-  const std::string& word = tag != nullptr ? tag->text : option.default_value;
-  std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < option.members().size(); ++i) {
-    const Option& group = option.members()[i];
-    if (group.name != word || (found && find(node, group.told_by) == nullptr)) continue;
-    found = i;
-  }
-  if (!found) {
-    fail(tag->mark, fmt::format("`{}` must be one of: {}, not `{}`{}", option.tag, allowed, word,
-                                suggestion(word, names_of(option.members()))));
-  } else if (const std::string& instead = option.members()[*found].not_yet; !instead.empty()) {
-    not_yet(tag->mark, fmt::format("`{}: {}`", option.tag, word), instead);
-    return std::nullopt;
+  Option words = option;
+  words.type = Type::choice;
+  std::optional<std::size_t> found =
+      choice({*this, words, tag != nullptr ? *tag : by_default, below(path, option.tag)});
+  for (std::size_t i = found.value_or(groups.size()); i < groups.size(); ++i) {
+    if (groups[i].name == groups[*found].name && find(node, groups[i].told_by) != nullptr) found = i;
   }
   return found;
 }
 
-std::string Reader::unknown_key(const Option& group, const Entry& entry, const std::string& path,
-                                const Option* variant) {
-  std::vector<std::string> known = available_names(group.members());
+std::string Reader::unknown_key(const Source& group, const Entry& entry) {
+  const Option* variant = group.variant;
+  std::vector<std::string> known = available_names(group.option.members());
   if (variant != nullptr) known.insert(known.begin(), variant->tag);
-  std::string message = fmt::format("unknown key `{}` in {}{}; known: {}", entry.key, title(path),
+  std::string message = fmt::format("unknown key `{}` in {}{}; known: {}", entry.key, title(group.path),
                                     suggestion(entry.key, known), joined(known));
   for (const Option& other : variant != nullptr ? variant->members() : std::vector<Option>{}) {
     const std::vector<std::string> names = names_of(other.members());
@@ -322,17 +312,17 @@ std::string Reader::unknown_key(const Option& group, const Entry& entry, const s
   return nearest(entry.key, known);
 }
 
-bool Reader::has_all(const Option& group, const Node& node, const std::string& path,
-                     const std::set<std::string>& meant) {
-  const auto is_present = [&](const std::string& key) { return find(node, key) != nullptr || meant.contains(key); };
+bool Reader::has_all(const Source& group, const std::set<std::string>& meant) {
+  const auto& [reader, option, node, path, variant] = group;
+  const auto is_present = [&](const std::string& key) { return find(group.node, key) || meant.contains(key); };
   bool complete = true;
-  for (const Option& member : group.members()) {
+  for (const Option& member : option.members()) {
     if (!member.is_required || is_present(member.name) || (member.is_internal && !is_stage_file_)) continue;
     fail(node.mark,
          fmt::format("{} lacks the key `{}`: {} ({})", title(path), member.name, member.text, expected(member)));
     complete = false;
   }
-  for (const KeySet& set : group.alternatives) {
+  for (const KeySet& set : option.alternatives) {
     const auto present = static_cast<std::size_t>(std::count_if(set.keys.begin(), set.keys.end(), is_present));
     if (present >= set.least && present <= set.most) continue;
     fail(node.mark, fmt::format("{} needs {}; it has {}", title(path), wanted(set),
@@ -342,28 +332,30 @@ bool Reader::has_all(const Option& group, const Node& node, const std::string& p
   return complete;
 }
 
-bool Reader::keys(const Option& group, const Node& node, const std::string& path, const Option* variant) {
-  if (!fits(group, node, path)) return false;
+bool Reader::keys(const Source& group) {
+  const auto& [reader, option, node, path, variant] = group;
+  if (!fits(group)) return false;
   bool complete = true, has_unavailable = false;
   std::set<std::string> meant; // keys that stand there misspelt
   for (const Entry& entry : node.entries) {
     note(below(path, entry.key), entry.value, &entry.mark);
     if (variant != nullptr && entry.key == variant->tag) continue;
-    const auto member = std::find_if(group.members().begin(), group.members().end(),
+    const auto member = std::find_if(option.members().begin(), option.members().end(),
                                      [&](const Option& o) { return o.name == entry.key; });
-    if (member == group.members().end() || (member->is_internal && !is_stage_file_)) {
-      meant.insert(unknown_key(group, entry, path, variant));
+    if (member == option.members().end() || (member->is_internal && !is_stage_file_)) {
+      meant.insert(unknown_key(group, entry));
       complete = false;
     } else if (!member->not_yet.empty()) {
-      complete = not_yet(entry.mark, fmt::format("`{}`", entry.key), member->not_yet);
+      not_yet(entry.mark, fmt::format("`{}`", entry.key), member->not_yet);
+      complete = false;
       has_unavailable = true;
     }
   }
-  for (const Option& member : group.members()) {
+  for (const Option& member : option.members()) {
     if (!member.defines.empty() && find(node, member.name) == nullptr) cannot_know(member.defines);
   }
   // a group that asks for something unavailable is not also told what else it lacks
-  return (has_unavailable || has_all(group, node, path, meant)) && complete;
+  return (has_unavailable || has_all(group, meant)) && complete;
 }
 
 } // namespace pneuma::pipeline::schema

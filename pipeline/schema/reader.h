@@ -7,12 +7,22 @@
 #include <set>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "pipeline/schema/option.h"
 
 namespace pneuma::pipeline::schema {
+
+class Reader;
+
+// What is read: a node at its path, as an option describes it.
+struct Source {
+  Reader& reader;
+  const Option& option;
+  const Node& node;
+  const std::string& path;
+  const Option* variant = nullptr; // of which the option is one of several groups
+};
 
 // Reads trees of YAML against options: reports every problem at its place, remembers where each value stands, and which
 // names are defined and referred to. Values have paths of keys and list positions, "cushion.foils.0.thickness"; what a
@@ -62,31 +72,15 @@ public:
   void check_references(); // reports those to names that are not defined
 
   // One level of a tree; false or none: a problem was reported.
-  bool fits(const Option& option, const Node& node, const std::string& path); // list, map or scalar as it must be
-  std::optional<double> number(const Option& option, const Node& node, const std::string& path);
-  std::optional<bool> flag(const Option& option, const Node& node, const std::string& path);
-  std::optional<std::size_t> choice(const Option& option, const Node& node, const std::string& path);
-  std::optional<std::string> text(const Option& option, const Node& node, const std::string& path); // or name
-  bool name(const std::string& name, const Mark& mark);
-  bool items(const Option& list, const Node& node, const std::string& path); // their number; notes their places
-  bool entries(const Option& table, const Node& node, const std::string& path);
-  bool keys(const Option& group, const Node& node, const std::string& path, const Option* variant);
-  std::optional<std::size_t> either(const Option& option, const Node& node, const std::string& path);
-  // Which of a variant's groups; its tag is noted.
-  std::optional<std::size_t> alternative(const Option& option, const Node& node, const std::string& path);
-
-  // While a default is read no place is noted.
-  class Default {
-  public:
-    explicit Default(Reader& reader) : reader_(reader), before_(std::exchange(reader.reads_default_, true)) {}
-    ~Default() { reader_.reads_default_ = before_; }
-    Default(const Default&) = delete;
-    Default& operator=(const Default&) = delete;
-
-  private:
-    Reader& reader_;
-    bool before_;
-  };
+  std::optional<double> number(const Source& source);
+  std::optional<bool> flag(const Source& source);
+  std::optional<std::size_t> choice(const Source& source);
+  std::optional<std::string> text(const Source& source); // or name
+  bool items(const Source& list);                        // their number; notes their places
+  bool entries(const Source& table);
+  bool keys(const Source& group);
+  std::optional<std::size_t> either(const Source& source);
+  std::optional<std::size_t> alternative(const Source& variant); // which of its groups
 
 private:
   struct Place {
@@ -104,15 +98,21 @@ private:
     Mark mark;
   };
 
-  void note(const std::string& path, const Node& node, const Mark* key, std::optional<std::size_t> position = {});
+  void note(const std::string& path, const Node& node, const Mark* key, std::optional<std::size_t> position = {}) {
+    places_.insert_or_assign(path, Place{&node, key, position});
+  }
   const Place* nearest_place(std::string path) const;
-  bool not_yet(const Mark& mark, const std::string& what, const std::string& instead);
+  bool name(const std::string& name, const Mark& mark);
+  bool fits(const Source& source); // list, map or scalar as it must be
+  // Something else must stand there; `hint`: more of the message.
+  std::nullopt_t misfit(const Source& source, const std::string& wanted, const std::string& hint = "");
+  std::nullopt_t not_yet(const Mark& mark, const std::string& what, const std::string& instead);
   // Returns the key that was meant; empty: none is near.
-  std::string unknown_key(const Option& group, const Entry& entry, const std::string& path, const Option* variant);
+  std::string unknown_key(const Source& group, const Entry& entry);
   // `meant`: keys that stand there misspelt, which is told.
-  bool has_all(const Option& group, const Node& node, const std::string& path, const std::set<std::string>& meant);
+  bool has_all(const Source& group, const std::set<std::string>& meant);
 
-  bool is_stage_file_, reads_default_ = false;
+  bool is_stage_file_;
   std::deque<Node> trees_;
   std::unordered_map<std::string, Place> places_;
   std::set<std::string> spoiled_;

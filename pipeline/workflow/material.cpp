@@ -38,8 +38,8 @@ void add_temperatures(Keys<Material>& keys) {
   const Form<Entry> item =
       group(entry).named("temperature", "what the law has there; the rest is as in the law itself");
   const auto read = [item](const schema::Source& source, Material& material) {
-    const auto& [reader, option, node, path] = source;
-    bool complete = reader.items(option, node, path);
+    const auto& [reader, option, node, path, variant] = source;
+    bool complete = reader.items(source);
     for (std::size_t i = 0; complete && i < node.items.size(); ++i) {
       const std::string place = schema::below(path, std::to_string(i));
       Entry one{0, material.law};

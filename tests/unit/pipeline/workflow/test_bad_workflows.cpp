@@ -135,7 +135,7 @@ const Bad cases[] = {
     {"RegularPolygonPlan",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "{shape: @regular_polygon, sides: 6, radius: 2 m}",
-     {"`shape: regular_polygon` is not available yet; rectangle, circle, triangle and polygon are available"}},
+     {"`shape`: `regular_polygon` is not available yet; rectangle, circle, triangle and polygon are available"}},
     {"PolygonWithoutPoints",
      rectangle,
      "@{shape: polygon}",
