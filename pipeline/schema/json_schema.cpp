@@ -19,7 +19,7 @@ constexpr const char* name_pattern = "^[A-Za-z0-9_-]+$";
 Json schema_of(const Option& option);
 
 // Says so of what the program does not offer yet.
-std::string not_available(const Option& option) {
+std::string refusal(const Option& option) {
   if (option.not_yet.empty()) return "";
   return fmt::format("`{}` is not available yet; {}", option.name, option.not_yet);
 }
@@ -29,7 +29,6 @@ Json group_of(const Option& option, const std::string& tag) {
   Json properties = Json::object(), required = Json::array();
   if (!tag.empty()) properties[tag] = {{"const", option.name}};
   for (const Option& member : option.members()) {
-    if (member.is_internal) continue;
     properties[member.name] = schema_of(member);
     if (member.is_required) required.push_back(member.name);
   }
@@ -102,7 +101,7 @@ Json body_of(const Option& option) {
         kinds.push_back(schema_of(kind));
       } else {
         Json one = group_of(kind, option.tag);
-        if (!kind.not_yet.empty()) one = {{"description", not_available(kind)}, {"not", Json::object()}};
+        if (!kind.not_yet.empty()) one = {{"description", refusal(kind)}, {"not", Json::object()}};
         if (option.default_value != kind.name) one["required"].push_back(option.tag);
         kinds.push_back(std::move(one));
       }
@@ -117,10 +116,10 @@ Json schema_of(const Option& option) {
   std::string text = option.text;
   if (option.type == Type::quantity) text += "; " + dimension_of(option.unit) + " with its unit";
   if (option.limits) text += ", " + option.limits->words;
-  if (!option.not_yet.empty()) text += not_available(option);
+  if (!option.not_yet.empty()) text += refusal(option);
   if (option.type == Type::choice) {
     for (const Option& word : option.members()) {
-      if (!word.not_yet.empty()) text += "; " + not_available(word);
+      if (!word.not_yet.empty()) text += "; " + refusal(word);
     }
   }
   Json json = body_of(option);

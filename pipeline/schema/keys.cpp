@@ -10,9 +10,7 @@ void AnyKeys::is(const std::string& name, const std::string& text, const std::st
 }
 
 void AnyKeys::unavailable(const std::string& name, const std::string& instead) {
-  Key& key = list.emplace_back();
-  key.option.type = Type::group;
-  key.option.name = name, key.option.not_yet = instead;
+  list.emplace_back().option = not_available(name, instead);
 }
 
 void AnyKeys::include(const AnyKeys& keys, const Part& part) {
@@ -29,6 +27,7 @@ void AnyKeys::include(const AnyKeys& keys, const Part& part) {
     });
   }
   sets_.insert(sets_.end(), keys.sets_.begin(), keys.sets_.end());
+  if (!keys.named_.name.empty()) named_ = keys.named_;
 }
 
 Option AnyKeys::option() const {
@@ -58,8 +57,7 @@ bool AnyKeys::read(const Source& source, void* owner) const {
   return complete && judge(reader, owner, source.path);
 }
 
-Node AnyKeys::write(const void* owner) const {
-  Node node;
+Node AnyKeys::write(const void* owner, Node node) const {
   node.kind = NodeKind::map;
   for (const Key& key : list) {
     if (!key.access || (key.condition && !key.condition(owner))) continue;
@@ -79,36 +77,6 @@ bool AnyKeys::judge(Reader& reader, const void* owner, const std::string& path) 
   for (const Rule& rule : rules) rule(reader, owner, path);
   return std::none_of(reader.problems.begin() + before, reader.problems.end(),
                       [](const Problem& problem) { return problem.error; });
-}
-
-AnyForm tagged_form(const std::string& tag, std::vector<Alternative> alternatives,
-                    const std::vector<std::string>& not_yet, const std::string& instead) {
-  std::vector<Option> members;
-  for (const Alternative& one : alternatives) members.push_back(one.keys.option());
-  for (const std::string& name : not_yet) {
-    Option& member = members.emplace_back(option_of(Type::group));
-    member.name = name, member.not_yet = instead;
-  }
-  AnyForm form{option_of(Type::variant, std::move(members)), {}};
-  form.option.tag = tag;
-  const auto kinds = std::make_shared<const std::vector<Alternative>>(std::move(alternatives));
-  const auto read = [kinds](const Source& source, void* value) {
-    const std::optional<std::size_t> found = source.reader.alternative(source);
-    if (!found) return false;
-    const Alternative& one = (*kinds)[*found];
-    one.begin(value);
-    return one.keys.read({source.reader, source.option.members()[*found], source.node, source.path, &source.option},
-                         value);
-  };
-  const auto write = [kinds, tag](const void* value) {
-    const auto found = std::find_if(kinds->begin(), kinds->end(), [&](const auto& one) { return one.is(value); });
-    Node keys = found->keys.write(value), node;
-    add(node, tag, scalar(found->keys.called()));
-    std::move(keys.entries.begin(), keys.entries.end(), std::back_inserter(node.entries));
-    return std::optional<Node>(std::move(node));
-  };
-  form.access = std::make_shared<Access>(Access{read, write});
-  return form;
 }
 
 } // namespace pneuma::pipeline::schema

@@ -70,13 +70,16 @@ public:
   void exactly_one(const std::vector<std::string>& keys) { sets_.push_back({keys, 1, 1}); }
   void at_least_one(const std::vector<std::string>& keys) { sets_.push_back({keys, 1, keys.size()}); }
   void not_both(const std::string& first, const std::string& second) { sets_.push_back({{first, second}, 0, 1}); }
-  // The keys and rules of a part of the owner.
+  // The keys and rules of a part of the owner, and what they are called.
   void include(const AnyKeys& keys, const Part& part);
+  // Of maps of which one is chosen: makes the owner one that is written with these keys; whether it is.
+  std::function<void(void* owner)> begin;
+  std::function<bool(const void* owner)> is_written;
 
   const std::string& called() const { return named_.name; }
   Option option() const;
   bool read(const Source& source, void* owner) const;
-  Node write(const void* owner) const;
+  Node write(const void* owner, Node node = {}) const;
 
 private:
   bool judge(Reader& reader, const void* owner, const std::string& path) const;
@@ -104,10 +107,6 @@ public:
     }
     Declared or_another() { // one of several, or one that is filled in
       key.option.is_required = false;
-      return *this;
-    }
-    Declared internal() { // of stage.yaml alone
-      key.option.is_internal = true;
       return *this;
     }
     Declared varies_with_temperature() {
@@ -147,6 +146,17 @@ public:
         list.emplace_back(Key{whole.option, whole.access, [](void* owner) { return owner; }, false, {}, "", false})};
   }
 
+  // Also the keys of an A: `variant_of` an owner, or a member of it, is a std::variant.
+  template <class A, class VariantOf>
+  void alternative(const Keys<A>& keys, const VariantOf& variant_of) {
+    const auto held = [variant_of](void* owner) -> auto& {
+      return std::invoke(variant_of, *static_cast<T*>(owner));
+    };
+    include(keys, [held](void* owner) -> void* { return &std::get<A>(held(owner)); });
+    begin = [held](void* owner) { held(owner) = A{}; };
+    is_written = [held](const void* owner) { return std::holds_alternative<A>(held(const_cast<void*>(owner))); };
+  }
+
   void rule(const std::function<void(Reader&, const At<T>&)>& check) {
     rules.push_back([check](Reader& reader, const void* owner, const std::string& path) {
       check(reader, {*static_cast<const T*>(owner), path});
@@ -162,17 +172,17 @@ public:
   }
 };
 
-// Where the keys of a T are declared; specialised for types of other folders.
+// Where the keys of a T are declared; there are overloads for types of other folders.
 template <class T>
-struct Declaration {
-  static void declare(Keys<T>& keys) { T::declare(keys); }
-};
+void declare(Keys<T>& keys) {
+  T::declare(keys);
+}
 
 template <class T>
 const Keys<T>& keys_of() {
   static const Keys<T> keys = [] {
     Keys<T> made;
-    Declaration<T>::declare(made);
+    declare(made);
     if constexpr (requires(Reader & reader, const At<T>& value) { T::check(reader, value); }) made.rule(T::check);
     return made;
   }();
@@ -193,51 +203,44 @@ Form<T> group() {
   return group(keys_of<T>());
 }
 
-// One of the maps that a value may be written as.
-struct Alternative {
-  AnyKeys keys;
-  std::function<void(void*)> begin;    // before its keys are read
-  std::function<bool(const void*)> is; // whether a value is written so
-};
-
-struct AnyForm {
-  Option option;
-  std::shared_ptr<const Access> access;
-};
-
-// A map whose key `tag` says which of them it is. `not_yet`: names that the format knows.
-AnyForm tagged_form(const std::string& tag, std::vector<Alternative> alternatives,
-                    const std::vector<std::string>& not_yet, const std::string& instead);
-
+// One of several maps; its key `tag` says which of them it is.
 template <class T>
-Form<T> tagged(const std::string& tag, std::vector<Alternative> alternatives,
-               const std::vector<std::string>& not_yet = {}, const std::string& instead = "") {
-  AnyForm form = tagged_form(tag, std::move(alternatives), not_yet, instead);
-  return {std::move(form.option), std::move(form.access)};
-}
-
-// The keys of a T where a std::variant holds it.
-template <class T, class Variant>
-Alternative alternative_of() {
-  Alternative out;
-  out.keys.include(keys_of<T>(), [](void* value) -> void* { return &std::get<T>(*static_cast<Variant*>(value)); });
-  const Option option = keys_of<T>().option();
-  out.keys.is(option.name, option.text, option.told_by);
-  out.begin = [](void* value) { *static_cast<Variant*>(value) = T{}; };
-  out.is = [](const void* value) { return std::holds_alternative<T>(*static_cast<const Variant*>(value)); };
-  return out;
+Form<T> tagged(const std::string& tag, const std::vector<Keys<T>>& maps, std::vector<Option> unavailable = {}) {
+  std::vector<Option> members;
+  for (const Keys<T>& one : maps) members.push_back(one.option());
+  std::move(unavailable.begin(), unavailable.end(), std::back_inserter(members));
+  Option option = option_of(Type::variant, std::move(members));
+  option.tag = tag;
+  return form_of<T>(
+      std::move(option),
+      [maps](const Source& source, T& value) {
+        const std::optional<std::size_t> found = source.reader.alternative(source);
+        if (!found) return false;
+        maps[*found].begin(&value);
+        const Option& group = source.option.members()[*found];
+        return maps[*found].read({source.reader, group, source.node, source.path, &source.option}, &value);
+      },
+      [maps, tag](const T& value) {
+        const auto found =
+            std::find_if(maps.begin(), maps.end(), [&](const Keys<T>& one) { return one.is_written(&value); });
+        Node node;
+        add(node, tag, scalar(found->called()));
+        return found->write(&value, std::move(node));
+      });
 }
 
 template <class... Ts>
-std::vector<Alternative> alternatives_of(const std::variant<Ts...>*) {
-  return {alternative_of<Ts, std::variant<Ts...>>()...};
+std::vector<Keys<std::variant<Ts...>>> keys_of_all(const std::variant<Ts...>*) {
+  std::vector<Keys<std::variant<Ts...>>> maps(sizeof...(Ts));
+  std::size_t i = 0;
+  (maps[i++].alternative(keys_of<Ts>(), std::identity()), ...);
+  return maps;
 }
 
-// A variant of maps, told apart by the key `tag`.
+// A variant of maps.
 template <class Variant>
-Form<Variant> variant(const std::string& tag, const std::vector<std::string>& not_yet = {},
-                      const std::string& instead = "") {
-  return tagged<Variant>(tag, alternatives_of(static_cast<const Variant*>(nullptr)), not_yet, instead);
+Form<Variant> variant(const std::string& tag, std::vector<Option> unavailable = {}) {
+  return tagged<Variant>(tag, keys_of_all(static_cast<const Variant*>(nullptr)), std::move(unavailable));
 }
 
 // A T of which a user says nothing.

@@ -22,6 +22,12 @@ Option option_of(Type type, std::vector<Option> members) {
   return option;
 }
 
+Option not_available(const std::string& name, const std::string& instead) {
+  Option option = option_of(Type::group);
+  option.name = name, option.not_yet = instead;
+  return option;
+}
+
 void set_default(Option& option, const std::string& yaml) {
   std::vector<Problem> none;
   option.default_node = std::make_shared<const Node>(parse_yaml(yaml, "default", none));
@@ -52,7 +58,7 @@ std::vector<std::string> names_of(const std::vector<Option>& options) {
 std::vector<std::string> available_names(const std::vector<Option>& options) {
   std::vector<Option> available;
   std::copy_if(options.begin(), options.end(), std::back_inserter(available),
-               [](const Option& option) { return option.not_yet.empty() && !option.is_internal; });
+               [](const Option& option) { return option.not_yet.empty(); });
   return names_of(available);
 }
 
@@ -101,7 +107,6 @@ std::string wanted(const KeySet& set) {
 namespace {
 
 void describe(const Option& option, const std::string& name, const std::string& indent, std::string& out) {
-  if (option.is_internal) return;
   if (!option.not_yet.empty()) {
     out += fmt::format("{}{}: not available yet; {}\n", indent, name, option.not_yet);
     return;

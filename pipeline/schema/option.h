@@ -66,7 +66,6 @@ struct Option {
   std::string told_by; // of a group: the key by which it is told from others of its name in a variant
 
   bool is_required = false;
-  bool is_internal = false;                 // stands in stage.yaml alone
   std::string default_value;                // as YAML; empty: none
   std::shared_ptr<const Node> default_node; // the same, read
   std::string not_yet;                      // known but not available: what is available instead
@@ -82,6 +81,7 @@ struct Option {
 };
 
 Option option_of(Type type, std::vector<Option> members = {});
+Option not_available(const std::string& name, const std::string& instead); // which the format knows: a map
 void set_default(Option& option, const std::string& yaml);
 
 NodeKind kind_of(const Option& option); // what it is written as; of `either` what a scalar is

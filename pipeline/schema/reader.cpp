@@ -317,7 +317,7 @@ bool Reader::has_all(const Source& group, const std::set<std::string>& meant) {
   const auto is_present = [&](const std::string& key) { return find(group.node, key) || meant.contains(key); };
   bool complete = true;
   for (const Option& member : option.members()) {
-    if (!member.is_required || is_present(member.name) || (member.is_internal && !is_stage_file_)) continue;
+    if (!member.is_required || is_present(member.name)) continue;
     fail(node.mark,
          fmt::format("{} lacks the key `{}`: {} ({})", title(path), member.name, member.text, expected(member)));
     complete = false;
@@ -342,7 +342,7 @@ bool Reader::keys(const Source& group) {
     if (variant != nullptr && entry.key == variant->tag) continue;
     const auto member = std::find_if(option.members().begin(), option.members().end(),
                                      [&](const Option& o) { return o.name == entry.key; });
-    if (member == option.members().end() || (member->is_internal && !is_stage_file_)) {
+    if (member == option.members().end()) {
       meant.insert(unknown_key(group, entry));
       complete = false;
     } else if (!member->not_yet.empty()) {

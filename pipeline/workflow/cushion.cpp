@@ -104,18 +104,18 @@ std::string ring_fault(const std::vector<base::Vec2>& corners) {
 
 } // namespace
 
-void Declaration<geometry::Rectangle>::declare(Keys<geometry::Rectangle>& keys) {
+void declare(Keys<geometry::Rectangle>& keys) {
   keys("length", &geometry::Rectangle::length, length(), "along x");
   keys("width", &geometry::Rectangle::width, length(), "along y");
   keys.is("rectangle", "edges south, east, north, west");
 }
 
-void Declaration<geometry::Circle>::declare(Keys<geometry::Circle>& keys) {
+void declare(Keys<geometry::Circle>& keys) {
   keys("radius", &geometry::Circle::radius, length(), "of the rim");
   keys.is("circle", "edge rim");
 }
 
-void Declaration<geometry::Triangle>::declare(Keys<geometry::Triangle>& keys) {
+void declare(Keys<geometry::Triangle>& keys) {
   using geometry::Triangle;
   keys.computed(
       "side", length(), [](Triangle& plan, double side) { plan = geometry::equilateral(side); },
@@ -136,7 +136,7 @@ void Declaration<geometry::Triangle>::declare(Keys<geometry::Triangle>& keys) {
   });
 }
 
-void Declaration<geometry::Polygon>::declare(Keys<geometry::Polygon>& keys) {
+void declare(Keys<geometry::Polygon>& keys) {
   keys("points", &geometry::Polygon::points, points(3).judged(ring_fault), "corners in order, either way round");
   keys.is("polygon", "edges e1 (from the first point to the second), e2, ...; re-entrant corners are allowed");
 }

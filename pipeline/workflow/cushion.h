@@ -72,10 +72,12 @@ struct Cushion {
   std::vector<ChamberSettings> chambers;
 
   static void declare(auto& keys) {
-    const char* shapes = "rectangle, circle, triangle and polygon are available";
+    std::vector<schema::Option> other_shapes;
+    for (const char* shape : {"regular_polygon", "outline", "file"}) {
+      other_shapes.push_back(schema::not_available(shape, "rectangle, circle, triangle and polygon are available"));
+    }
     const char* clamped = "clamped edges are available";
-    keys("plan", &Cushion::plan,
-         schema::variant<geometry::Plan>("shape", {"regular_polygon", "outline", "file"}, shapes),
+    keys("plan", &Cushion::plan, schema::variant<geometry::Plan>("shape", other_shapes),
          "the clamped outline in z = 0; rectangle and circle are centred on the origin");
     keys("edges", &Cushion::edges,
          table(choice<std::string>({{"clamped", "clamped", "held in all directions"},
@@ -104,21 +106,9 @@ struct Cushion {
 
 namespace pneuma::pipeline::schema {
 
-template <>
-struct Declaration<geometry::Rectangle> {
-  static void declare(Keys<geometry::Rectangle>& keys);
-};
-template <>
-struct Declaration<geometry::Circle> {
-  static void declare(Keys<geometry::Circle>& keys);
-};
-template <>
-struct Declaration<geometry::Triangle> {
-  static void declare(Keys<geometry::Triangle>& keys);
-};
-template <>
-struct Declaration<geometry::Polygon> {
-  static void declare(Keys<geometry::Polygon>& keys);
-};
+void declare(Keys<geometry::Rectangle>& keys);
+void declare(Keys<geometry::Circle>& keys);
+void declare(Keys<geometry::Triangle>& keys);
+void declare(Keys<geometry::Polygon>& keys);
 
 } // namespace pneuma::pipeline::schema

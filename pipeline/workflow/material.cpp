@@ -67,49 +67,51 @@ void add_temperatures(Keys<Material>& keys) {
 
 // The keys of one law in a material.
 template <class L>
-schema::Alternative material_of(const Keys<L>& law, bool has_temperatures = false) {
+Keys<Material> material_of(const Keys<L>& law, bool has_temperatures = false) {
   Keys<Material> keys;
-  keys.include(law, [](void* value) -> void* { return &std::get<L>(static_cast<Material*>(value)->law); });
+  keys.alternative(law, &Material::law);
   if (has_temperatures) {
     keys("at", &Material::at, quantity("K").positive().otherwise("23 degC"),
          "temperature at which the law's own values hold")
         .where([](const Material& material) { return !material.other.empty(); }, "");
     add_temperatures<L>(keys);
   }
-  keys.include(schema::keys_of<Material>(), [](void* value) { return value; });
+  keys.include(schema::keys_of<Material>(), [](void* material) { return material; });
   keys.rule(check_branches);
-  const schema::Option named = law.option();
-  keys.is(named.name, named.text, named.told_by);
-  return {std::move(keys), [](void* value) { static_cast<Material*>(value)->law = L{}; },
-          [](const void* value) { return std::holds_alternative<L>(static_cast<const Material*>(value)->law); }};
+  return keys;
+}
+
+TableLaw* table_in(void* material) {
+  return std::get_if<TableLaw>(&static_cast<Material*>(material)->law);
+}
+
+Keys<Material> material_of_table(TableLaw::Kind kind) {
+  Keys<TableLaw> law;
+  TableLaw::declare(law, kind);
+  law.rule(TableLaw::check);
+  Keys<Material> keys = material_of(law);
+  keys.begin = [begin = keys.begin, kind](void* material) {
+    begin(material);
+    table_in(material)->kind = kind;
+  };
+  keys.is_written = [kind](const void* material) {
+    const TableLaw* table = table_in(const_cast<void*>(material));
+    return table != nullptr && table->kind == kind;
+  };
+  return keys;
 }
 
 } // namespace
 
 Form<Material> material() {
   using schema::keys_of;
-  std::vector<schema::Alternative> laws = {
-      material_of(keys_of<ElasticLaw>(), true), material_of(keys_of<OrthotropicLaw>(), true),
-      material_of(keys_of<J2Law>(), true), material_of(keys_of<OgdenLaw>()), material_of(keys_of<MooneyRivlinLaw>())};
   Keys<MooneyRivlinLaw> neo_hooke;
   MooneyRivlinLaw::declare_neo_hooke(neo_hooke);
-  laws.push_back(material_of(neo_hooke));
-  laws.back().is = [](const void*) { return false; }; // written as what it is
-  for (const TableLaw::Kind kind : {TableLaw::Kind::pd_nurbs, TableLaw::Kind::le_nurbs}) {
-    Keys<TableLaw> keys;
-    TableLaw::declare(keys, kind);
-    keys.rule(TableLaw::check);
-    laws.push_back(material_of(keys));
-    laws.back().begin = [kind](void* value) {
-      static_cast<Material*>(value)->law = TableLaw{};
-      std::get<TableLaw>(static_cast<Material*>(value)->law).kind = kind;
-    };
-    laws.back().is = [kind](const void* value) {
-      const auto* law = std::get_if<TableLaw>(&static_cast<const Material*>(value)->law);
-      return law != nullptr && law->kind == kind;
-    };
-  }
-  return schema::tagged<Material>("law", std::move(laws));
+  return schema::tagged<Material>( // neo-Hooke is written as what it is, the first of its type
+      "law", {material_of(keys_of<ElasticLaw>(), true), material_of(keys_of<OrthotropicLaw>(), true),
+              material_of(keys_of<J2Law>(), true), material_of(keys_of<OgdenLaw>()),
+              material_of(keys_of<MooneyRivlinLaw>()), material_of(neo_hooke),
+              material_of_table(TableLaw::Kind::pd_nurbs), material_of_table(TableLaw::Kind::le_nurbs)});
 }
 
 void TableLaw::check(Reader& reader, const At<TableLaw>& law) {

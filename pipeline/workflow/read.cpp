@@ -60,7 +60,8 @@ void File::declare(schema::Keys<File>& keys, bool is_stage_file) {
   keys("cushion", &File::cushion, group<Cushion>(), "what is built");
   auto mesh = keys("mesh", &File::mesh, group<MeshSettings>(), "the mesh all foils get");
   mesh.key.option.is_required = !is_stage_file;
-  keys("stages", &File::stages, table(stage_form().named("ID", "a stage")).otherwise("{}"), "the stages by their IDs");
+  keys("stages", &File::stages, table(stage_form(is_stage_file).named("ID", "a stage")).otherwise("{}"),
+       "the stages by their IDs");
   if (is_stage_file) return;
   const char* stage = "loads stand in a wind stage";
   keys.unavailable("loads", stage);
@@ -191,11 +192,12 @@ void read_stages(File& file, const Node& tree, Workflow& out) {
     if (found == file.stages.end()) continue;
     out.stages.push_back(std::move(found->second));
     out.stages.back().id = entry.key;
+    out.stages.back().run = yaml::find(entry.value, "run")->text;
   }
 }
 
 Node stage_node(const StageSettings& stage) {
-  static const Form<StageSettings> form = stage_form();
+  static const Form<StageSettings> form = stage_form(true);
   return form.write(stage);
 }
 

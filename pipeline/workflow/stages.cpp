@@ -21,28 +21,20 @@ std::string path_of(const StageSettings& stage) {
 }
 
 template <class S>
-schema::Alternative alternative() {
+schema::Keys<StageSettings> keys_of_stage(bool is_stage_file) {
   schema::Keys<StageSettings> keys;
   keys("from", &StageSettings::from, word(), "the stage it starts from");
-  keys("from_run", &StageSettings::from_run, word(), "kind of the stage it starts from").internal();
-  keys.include(schema::keys_of<S>(),
-               [](void* stage) -> void* { return &std::get<S>(static_cast<StageSettings*>(stage)->settings); });
-  const schema::Option named = schema::keys_of<S>().option();
-  keys.is(named.name, named.text);
-  return {
-      std::move(keys),
-      [run = named.name](void* stage) {
-        static_cast<StageSettings*>(stage)->run = run;
-        static_cast<StageSettings*>(stage)->settings = S{};
-      },
-      [](const void* stage) { return std::holds_alternative<S>(static_cast<const StageSettings*>(stage)->settings); }};
+  if (is_stage_file) keys("from_run", &StageSettings::from_run, word(), "kind of the stage it starts from");
+  keys.alternative(schema::keys_of<S>(), &StageSettings::settings);
+  return keys;
 }
 
 } // namespace
 
-Form<StageSettings> stage_form() {
-  return schema::tagged<StageSettings>("run", {alternative<FormfindSettings>(), alternative<PatternSettings>(),
-                                               alternative<InflateSettings>(), alternative<WindSettings>()});
+Form<StageSettings> stage_form(bool is_stage_file) {
+  return schema::tagged<StageSettings>(
+      "run", {keys_of_stage<FormfindSettings>(is_stage_file), keys_of_stage<PatternSettings>(is_stage_file),
+              keys_of_stage<InflateSettings>(is_stage_file), keys_of_stage<WindSettings>(is_stage_file)});
 }
 
 namespace {

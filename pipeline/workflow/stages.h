@@ -7,8 +7,9 @@
 // the loads of stages before.
 namespace pneuma::pipeline::workflow {
 
-// Form of one stage; its id and the kind of the stage it starts from are found by `link`.
-Form<StageSettings> stage_form();
+// Form of one stage, whose id and kind its reader knows; the kind of the stage it starts from stands in stage.yaml, in
+// a user's file `link` finds it.
+Form<StageSettings> stage_form(bool is_stage_file);
 
 // Fills in what kind each stage starts from and checks that every chain of them begins at the mesh. `written`: the
 // stages as they stand in the file, those with faults too.
