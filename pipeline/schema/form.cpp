@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/schema/form.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include "pipeline/schema/spelling.h"
 
 namespace pneuma::pipeline::schema {
 
@@ -63,29 +63,18 @@ Form<std::string> word() {
 }
 
 Form<std::string> name_of_a(const std::string& kind, const std::vector<std::string>& reserved) {
-  Form<std::string> form = word();
-  form.option.defines = kind;
-  const auto read = [inner = form.access, kind, reserved](const Source& source, std::string& value) {
-    if (!inner->read(source, &value)) {
-      source.reader.cannot_know(kind);
-      return false;
-    }
-    source.reader.define(kind, value, source.node.mark);
-    if (std::find(reserved.begin(), reserved.end(), value) == reserved.end()) return true;
-    source.reader.fail(source.node.mark,
-                       fmt::format("a {} cannot be called `{}`: the word has a meaning of its own", kind, value));
-    return false;
+  const auto fault = [kind, reserved](const std::string& name) {
+    if (!is_among(name, reserved)) return std::string();
+    return fmt::format("a {} cannot be called `{}`: the word has a meaning of its own", kind, name);
   };
-  return form_of<std::string>(form.option, read, scalar);
+  return word().judged(fault).defines(kind, [](const std::string& name) { return std::vector{name}; });
 }
 
 Form<std::string> reference_to(const std::string& kind, const std::string& other) {
-  const auto read = [inner = word().access, kind, other](const Source& source, std::string& value) {
-    if (!inner->read(source, &value)) return false;
-    if (other.empty() || value != other) source.reader.refer(kind, value, source.node.mark);
+  return word().and_then([kind, other](const Source& source, const std::string& name) {
+    if (other.empty() || name != other) source.reader.refer(kind, name, source.node.mark);
     return true;
-  };
-  return form_of<std::string>(option_of(Type::name), read, scalar);
+  });
 }
 
 } // namespace pneuma::pipeline::schema

@@ -58,15 +58,28 @@ struct Form {
   Form named(const std::string& name, const std::string& text) const {
     return changed([&](Option& o) { o.name = name, o.text = text; });
   }
-  // `fault` says what is wrong with a value by itself: a sentence, or "must ..." about its key; empty: nothing.
-  Form judged(std::function<std::string(const T&)> fault) const {
-    const auto read = [access = access, fault](const Source& source, void* value) {
-      if (!access->read(source, value)) return false;
-      const std::string wrong = fault(*static_cast<const T*>(value));
-      if (!wrong.empty()) source.reader.fail_value(source.node.mark, source.path, wrong);
-      return wrong.empty();
+  // What is done with a value that was read; false: a problem was reported.
+  Form and_then(const std::function<bool(const Source&, T&)>& done) const {
+    const auto read = [access = access, done](const Source& source, void* value) {
+      return access->read(source, value) && done(source, *static_cast<T*>(value));
     };
     return {option, std::make_shared<Access>(Access{read, access->write})};
+  }
+  // `fault` says what is wrong with a value by itself: a sentence, or "must ..." about its key; empty: nothing.
+  Form judged(const std::function<std::string(const T&)>& fault) const {
+    return and_then([fault](const Source& source, const T& value) {
+      const std::string wrong = fault(value);
+      if (!wrong.empty()) source.reader.fail_value(source, wrong);
+      return wrong.empty();
+    });
+  }
+  // A value gives names to things of a kind ("foil"), for others to refer to.
+  Form defines(const std::string& kind, const std::function<std::vector<std::string>(const T&)>& names) const {
+    const Form form = changed([&](Option& o) { o.defines = kind; });
+    return form.and_then([kind, names](const Source& source, const T& value) {
+      for (const std::string& name : names(value)) source.reader.define(kind, name, source.node.mark);
+      return true;
+    });
   }
 
 private:
@@ -205,7 +218,7 @@ Form<V> vector(const Form<double>& component) {
       });
 }
 
-// A map from names; of a kind that there must be ("foil"), or a word that stands for all of them.
+// A map from names; of a kind that there must be ("foil"), or another word.
 template <class T>
 Form<std::map<std::string, T>> table(const Form<T>& item, const std::string& kind = "", const std::string& other = "") {
   return form_of<std::map<std::string, T>>(
@@ -227,6 +240,25 @@ Form<std::map<std::string, T>> table(const Form<T>& item, const std::string& kin
         for (const auto& [name, one] : value) add(node, name, item.write(one));
         return node;
       });
+}
+
+inline constexpr const char* all = "all"; // key that stands for every one of a kind that is not named
+
+// A map from things of a kind, which are known by then, or from `all`, which is written out; `every`: it leaves out
+// none.
+template <class T>
+Form<std::map<std::string, T>> each(const std::string& kind, const Form<T>& item, bool every) {
+  return table(item, kind, all).and_then([kind, every](const Source& source, std::map<std::string, T>& value) {
+    Reader& reader = source.reader;
+    if (every) reader.expect_every(kind, all, source);
+    const auto of_all = reader.knows(kind) ? value.extract(all) : typename std::map<std::string, T>::node_type();
+    if (of_all.empty()) return true;
+    for (const std::string& name : reader.names(kind)) {
+      if (value.emplace(name, of_all.mapped()).second)
+        reader.came_from(below(source.path, name), below(source.path, all));
+    }
+    return true;
+  });
 }
 
 // The one of several forms that fits what is written; `which` says as which of them a value is written.

@@ -45,8 +45,11 @@ bool AnyKeys::read(const Source& source, void* owner) const {
   for (const Key& key : list) {
     if (!key.access) continue;
     const std::string path = below(source.path, key.option.name);
-    if (const Node* given = find(source.node, key.option.name)) {
-      if (key.access->read({reader, key.option, *given, path}, key.target(owner))) continue;
+    const Node* given = find(source.node, key.option.name);
+    const bool good = given != nullptr && key.access->read({reader, key.option, *given, path}, key.target(owner));
+    if (!good && !key.option.defines.empty()) reader.cannot_know(key.option.defines);
+    if (good) continue;
+    if (given != nullptr) {
       reader.spoil(path);
       complete = false;
     } else if (key.option.default_node && key.option.tag.empty()) {

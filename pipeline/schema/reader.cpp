@@ -42,8 +42,8 @@ std::string quoted(const std::string& key) {
   return fmt::format("`{}`", key);
 }
 
-void Reader::fail_value(const Mark& mark, const std::string& path, const std::string& fault) {
-  fail(mark, fault.starts_with("must ") ? fmt::format("{} {}", title(path), fault) : fault);
+void Reader::fail_value(const Source& source, const std::string& fault) {
+  fail(source.node.mark, fault.starts_with("must ") ? fmt::format("{} {}", title(source.path), fault) : fault);
 }
 
 void Reader::refuse(const std::string& path, const std::string& why) {
@@ -126,6 +126,19 @@ const std::vector<std::string>& Reader::names(const std::string& kind) const {
 std::string Reader::no_such(const std::string& kind, const std::string& name) const {
   return fmt::format("there is no {0} `{1}`{2}; {0}s: {3}", kind, name, suggestion(name, names(kind)),
                      joined(names(kind)));
+}
+
+void Reader::expect_every(const std::string& kind, const std::string& all, const Source& table) {
+  const std::vector<Entry>& entries = table.node.entries;
+  const auto is_another = [&](const Entry& entry) { // a stranger is told, and perhaps one of them was meant
+    return entry.key == all || !is_among(entry.key, names(kind));
+  };
+  if (!knows(kind) || std::any_of(entries.begin(), entries.end(), is_another)) return;
+  for (const std::string& name : names(kind)) {
+    if (find(table.node, name) != nullptr) continue;
+    fail(table.node.mark,
+         fmt::format("{} says nothing about the {} `{}`; name it, or use `{}`", title(table.path), kind, name, all));
+  }
 }
 
 void Reader::check_references() {
@@ -263,7 +276,7 @@ std::optional<std::size_t> Reader::either(const Source& source) {
     }
     if (kinds[i].type == Type::choice) {
       words = names_of(kinds[i].members());
-      if (std::find(words.begin(), words.end(), node.text) == words.end()) {
+      if (!is_among(node.text, words)) {
         if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
         break;
       }
@@ -302,8 +315,7 @@ std::string Reader::unknown_key(const Source& group, const Entry& entry) {
   std::string message = fmt::format("unknown key `{}` in {}{}; known: {}", entry.key, title(group.path),
                                     suggestion(entry.key, known), joined(known));
   for (const Option& other : variant != nullptr ? variant->members() : std::vector<Option>{}) {
-    const std::vector<std::string> names = names_of(other.members());
-    if (std::find(names.begin(), names.end(), entry.key) == names.end()) continue;
+    if (!is_among(entry.key, names_of(other.members()))) continue;
     message += fmt::format("; it belongs to `{}: {}`{}", variant->tag, other.name,
                            other.told_by.empty() ? "" : fmt::format(" with `{}`", other.told_by));
     break;
@@ -350,9 +362,6 @@ bool Reader::keys(const Source& group) {
       complete = false;
       has_unavailable = true;
     }
-  }
-  for (const Option& member : option.members()) {
-    if (!member.defines.empty() && find(node, member.name) == nullptr) cannot_know(member.defines);
   }
   // a group that asks for something unavailable is not also told what else it lacks
   return (has_unavailable || has_all(group, meant)) && complete;

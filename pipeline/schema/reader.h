@@ -47,8 +47,8 @@ public:
   void fail(const Mark& mark, std::string message) { problems.push_back({mark, std::move(message), true}); }
   void fail(const std::string& path, std::string message) { fail(mark(path), std::move(message)); }
   void fail_key(const std::string& path, std::string message) { fail(key_mark(path), std::move(message)); }
-  void fail_value(const Mark& mark, const std::string& path, const std::string& fault); // "must ..." of its title
-  void refuse(const std::string& path, const std::string& why); // a key: "`creep` <why>; leave it out"
+  void fail_value(const Source& source, const std::string& fault); // "must ..." of its title
+  void refuse(const std::string& path, const std::string& why);    // a key: "`creep` <why>; leave it out"
   void warn(const std::string& path, std::string message) {
     problems.push_back({mark(path), std::move(message), false});
   }
@@ -69,6 +69,8 @@ public:
   bool knows(const std::string& kind) const; // every one is readable
   const std::vector<std::string>& names(const std::string& kind) const;
   std::string no_such(const std::string& kind, const std::string& name) const; // "there is no foil `uper`; did ..."
+  // Reports those that a table with keys of a kind, or a word for all, says nothing about.
+  void expect_every(const std::string& kind, const std::string& all, const Source& table);
   void check_references(); // reports those to names that are not defined
 
   // One level of a tree; false or none: a problem was reported.

@@ -45,6 +45,10 @@ std::vector<std::string> others(const std::vector<std::string>& words, std::stri
   return out;
 }
 
+bool is_among(std::string_view word, const std::vector<std::string>& words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 std::string nearest(std::string_view word, const std::vector<std::string>& known) {
   if (known.size() > most_searched) return "";
   std::string best;

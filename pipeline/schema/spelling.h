@@ -16,6 +16,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 // The words but one, of many the first ones.
 std::vector<std::string> others(const std::vector<std::string>& words, std::string_view than);
 
+bool is_among(std::string_view word, const std::vector<std::string>& words);
+
 // "a, b, c"; "none" for an empty list, of a long one the beginning and the number.
 std::string joined(const std::vector<std::string>& words);
 

@@ -26,16 +26,6 @@ const std::string& Cushion::air_of(const std::string& chamber) const {
 
 namespace {
 
-void check_edges(Reader& reader, const At<Cushion>& cushion) {
-  const std::vector<std::string> known = geometry::edge_names(cushion->plan);
-  const auto edges = cushion[&Cushion::edges];
-  for (const auto& [edge, held] : edges.value) {
-    if (edge == all || std::find(known.begin(), known.end(), edge) != known.end()) continue;
-    reader.fail_key(edges.at(held, edge).path, fmt::format("the plan has no edge `{}`{}; its edges: {}", edge,
-                                                           schema::suggestion(edge, known), schema::joined(known)));
-  }
-}
-
 // Position of a wall from the weather side inwards; the base comes after the last foil. None: there is no such foil.
 std::optional<std::size_t> position_of(const std::string& wall, const Cushion& cushion) {
   const std::vector<FoilSettings>& foils = cushion.foils;
@@ -84,7 +74,6 @@ void check_connections(Reader& reader, const At<Cushion>& cushion) {
 } // namespace
 
 void Cushion::check(Reader& reader, const At<Cushion>& cushion) {
-  check_edges(reader, cushion);
   check_walls(reader, cushion);
   check_connections(reader, cushion);
 }

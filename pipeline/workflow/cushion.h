@@ -77,14 +77,17 @@ struct Cushion {
       other_shapes.push_back(schema::not_available(shape, "rectangle, circle, triangle and polygon are available"));
     }
     const char* clamped = "clamped edges are available";
-    keys("plan", &Cushion::plan, schema::variant<geometry::Plan>("shape", other_shapes),
+    keys("plan", &Cushion::plan,
+         schema::variant<geometry::Plan>("shape", other_shapes).defines("edge", geometry::edge_names),
          "the clamped outline in z = 0; rectangle and circle are centred on the origin");
     keys("edges", &Cushion::edges,
-         table(choice<std::string>({{"clamped", "clamped", "held in all directions"},
-                                    {"welded", {}, clamped},
-                                    {"free", {}, clamped},
-                                    {"symmetry", {}, clamped}})
-                   .named("EDGE", "how the edge is held"))
+         each("edge",
+              choice<std::string>({{"clamped", "clamped", "held in all directions"},
+                                   {"welded", {}, clamped},
+                                   {"free", {}, clamped},
+                                   {"symmetry", {}, clamped}})
+                  .named("EDGE", "how the edge is held"),
+              false)
              .otherwise("{}"),
          "per named edge or `all`");
     keys("foils", &Cushion::foils, list(group<FoilSettings>().named("foil", "a foil")).items(1, 16),

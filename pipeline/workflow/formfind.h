@@ -27,22 +27,23 @@ struct FormfindSettings {
     using Self = FormfindSettings;
     const char* isotropic = "an isotropic prestress (or stress) per foil is available: {all: 0.89 kN/m}";
     keys("gauge_pressure", &Self::gauge_pressure, gauge_pressures(), "the pressure of the form");
-    Form<double> warp_weft{schema::option_of(schema::Type::group), {}};
-    warp_weft.option.name = "{warp: ..., weft: ...}", warp_weft.option.not_yet = isotropic;
+    const Form<double> warp_weft{schema::not_available("{warp: ..., weft: ...}", isotropic), {}};
     keys("prestress", &Self::prestress,
-         table(either<double>({isotropic_prestress(), warp_weft}, [](double) { return 0; })
-                   .named("FOIL", "prestress of a foil or `all`"),
-               "foil", all)
+         each("foil",
+              either<double>({isotropic_prestress(), warp_weft}, [](double) { return 0; })
+                  .named("FOIL", "prestress of a foil or `all`"),
+              true)
              .items(1, 1000),
          "force per length")
         .or_another();
     keys("stress", &Self::stress,
-         table(quantity("Pa")
-                   .positive()
-                   .usual(1e4, 5e7, "usually 0.01 to 50 MPa")
-                   .such_as("4 MPa")
-                   .named("FOIL", "stress, times the nominal thickness"),
-               "foil", all)
+         each("foil",
+              quantity("Pa")
+                  .positive()
+                  .usual(1e4, 5e7, "usually 0.01 to 50 MPa")
+                  .such_as("4 MPa")
+                  .named("FOIL", "stress, times the nominal thickness"),
+              true)
              .items(1, 1000),
          "stress of a foil or `all`");
     keys.unavailable("sag", isotropic);

@@ -9,8 +9,10 @@ namespace pneuma::pipeline::workflow {
 using base::Vec2;
 using base::Vec3;
 
+using schema::all;
 using schema::At;
 using schema::choice;
+using schema::each;
 using schema::either;
 using schema::flag;
 using schema::Form;
@@ -29,8 +31,6 @@ using schema::text;
 using schema::tuple;
 using schema::word;
 using schema::word_or;
-
-inline constexpr const char* all = "all"; // key that stands for every foil or edge
 
 inline Form<double> length() {
   return quantity("m").positive().usual(0.01, 100, "usually 1 cm to 100 m").such_as("6 m");

@@ -20,7 +20,7 @@ struct InflateSettings : PathSettings {
                             {"stress_free", Reference::stress_free, "the found form is free of stress"}}),
          "of a found form");
     keys("prestress", &Self::prestress,
-         table(isotropic_prestress().named("prestress", "force per length, the same in all directions"), "foil", all)
+         each("foil", isotropic_prestress().named("prestress", "force per length, the same in all directions"), true)
              .items(1, 1000),
          "of a flat start, per foil or `all`");
     PathSettings::declare(keys);

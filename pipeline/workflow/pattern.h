@@ -113,10 +113,11 @@ struct PatternSettings {
         .where([](const auto& pattern) { return pattern.curves.empty() && !pattern.direction; },
                "has no effect beside `curves` or a given `direction`: it chooses among directions");
     keys("curves", &Self::curves,
-         table(list(points(2).named("curve", "points in plan from rim to rim"))
-                   .items(1, 10000)
-                   .named("FOIL", "of a foil or `all`"),
-               "foil", all)
+         each("foil",
+              list(points(2).named("curve", "points in plan from rim to rim"))
+                  .items(1, 10000)
+                  .named("FOIL", "of a foil or `all`"),
+              false) // of those that are cut
              .items(1, 1000),
          "the seams")
         .or_another()

@@ -7,6 +7,7 @@
 
 #include "geometry/base/errors.h"
 #include "pipeline/schema/json_schema.h"
+#include "pipeline/schema/spelling.h"
 #include "pipeline/workflow/materials.h"
 #include "pipeline/workflow/settings.h"
 #include "pipeline/workflow/stages.h"
@@ -246,10 +247,8 @@ Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& pa
   if (stages != nullptr && stages->kind == NodeKind::map) link(reader, *stages, out.stages);
   reader.check_references();
   if (reader.is_whole("site")) check_gravity(reader, out);
-  check_stages(reader, out);
-  if (has_errors(reader.problems)) return out;
-  complete(reader, out);
-  if (reader.is_stage_file()) return out;
+  settle(reader, out);
+  if (has_errors(reader.problems) || reader.is_stage_file()) return out;
   add_origins(reader, settings_node(out, nullptr), "", out);
   for (const StageSettings& stage : out.stages) {
     if (const auto* mesh = std::get_if<MeshSettings>(&stage.settings)) {
@@ -299,8 +298,7 @@ MaterialsResult read_materials(const std::filesystem::path& file, const std::vec
   for (auto& [name, material] : result.known) find_places(reader, material);
   for (const std::string& name : result.names) {
     const auto found = result.known.find(name);
-    const bool is_asked = std::find(asked.begin(), asked.end(), name) != asked.end();
-    if (is_asked && found != result.known.end()) result.materials.push_back(found->second);
+    if (schema::is_among(name, asked) && found != result.known.end()) result.materials.push_back(found->second);
   }
   result.problems = std::move(reader.problems);
   put_in_order(result.problems, file.generic_string());

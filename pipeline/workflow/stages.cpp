@@ -85,12 +85,9 @@ void link(Reader& reader, const Node& written, std::vector<StageSettings>& stage
     const auto from = runs.find(stage.from);
     if (stage.run == "mesh" || from == runs.end() || in_circle.contains(stage.id)) continue;
     stage.from_run = from->second;
-    const std::vector<std::string> known = {"mesh", "formfind", "pattern", "inflate", "wind"};
     const std::vector<std::string> allowed = starts_of(stage.run);
-    const auto is_in = [&](const std::vector<std::string>& list) {
-      return std::find(list.begin(), list.end(), stage.from_run) != list.end();
-    };
-    if (!is_in(known) || is_in(allowed)) continue;
+    const bool is_known = schema::is_among(stage.from_run, {"mesh", "formfind", "pattern", "inflate", "wind"});
+    if (!is_known || schema::is_among(stage.from_run, allowed)) continue;
     reader.fail(path_of(stage) + ".from",
                 fmt::format("`run: {}` cannot start from `{}` (`run: {}`); it starts from: {}", stage.run, stage.from,
                             stage.from_run, schema::joined(allowed)));
@@ -99,28 +96,21 @@ void link(Reader& reader, const Node& written, std::vector<StageSettings>& stage
 
 namespace {
 
-// {FOIL or all: ...} says something about every foil.
-template <class V>
-void check_foils(Reader& reader, const std::map<std::string, V>& table, const std::string& path) {
-  const std::vector<std::string>& foils = reader.names("foil");
-  const auto is_stranger = [&](const auto& entry) { // which is told, and perhaps one of them was meant
-    return std::find(foils.begin(), foils.end(), entry.first) == foils.end();
-  };
-  if (table.empty() || table.contains(all) || !reader.knows("foil") ||
-      std::any_of(table.begin(), table.end(), is_stranger))
-    return;
-  for (const std::string& foil : foils) {
-    if (table.contains(foil)) continue;
-    reader.fail(path,
-                fmt::format("{} says nothing about the foil `{}`; name it, or use `all`", reader.title(path), foil));
+// Chambers that have an air of their own.
+std::vector<std::string> airs_of(const Cushion& cushion) {
+  std::vector<std::string> airs;
+  for (const ChamberSettings& chamber : cushion.chambers) {
+    if (cushion.air_of(chamber.name) == chamber.name) airs.push_back(chamber.name);
   }
+  return airs;
 }
 
-// {CHAMBER: ...} says something about every chamber that has an air of its own, and nothing else about the others.
-void check_pressures(Reader& reader, const Cushion& cushion, const std::map<std::string, double>& pressures,
-                     const std::string& path) {
+// {CHAMBER: ...} says something about every chamber that has an air of its own; the others have the pressure of those
+// they are connected to.
+void settle_pressures(Reader& reader, const Cushion& cushion, std::map<std::string, double>& pressures,
+                      const std::string& path) {
   for (const ChamberSettings& chamber : cushion.chambers) {
-    const std::string& air = cushion.air_of(chamber.name);
+    const std::string &air = cushion.air_of(chamber.name), own_path = below(path, chamber.name);
     const auto own = pressures.find(chamber.name), shared = pressures.find(air);
     if (air == chamber.name && own == pressures.end()) {
       const auto sharing = std::find_if(pressures.begin(), pressures.end(),
@@ -131,22 +121,16 @@ void check_pressures(Reader& reader, const Cushion& cushion, const std::map<std:
                                   ? "0 Pa leaves it empty"
                                   : fmt::format("`{}` is connected to it and takes its pressure", sharing->first)));
     }
-    if (air == chamber.name || own == pressures.end() || shared == pressures.end()) continue;
+    if (shared == pressures.end()) continue;
+    if (own == pressures.end()) reader.came_from(own_path, below(path, air));
     // 0.4 kPa and 400 Pa may differ in the last bit
-    if (std::abs(own->second - shared->second) <= 1e-12 * std::abs(shared->second)) continue;
-    reader.fail(below(path, chamber.name),
-                fmt::format("`{}` is connected to `{}` and has its pressure, {}, not {}; leave it out", chamber.name,
-                            air, reader.written(below(path, air)), reader.written(below(path, chamber.name))));
+    if (own == pressures.end() || std::abs(own->second - shared->second) <= 1e-12 * std::abs(shared->second)) {
+      pressures[chamber.name] = shared->second;
+      continue;
+    }
+    reader.fail(own_path, fmt::format("`{}` is connected to `{}` and has its pressure, {}, not {}; leave it out",
+                                      chamber.name, air, reader.written(below(path, air)), reader.written(own_path)));
   }
-}
-
-// Chambers that have an air of their own.
-std::vector<std::string> airs_of(const Cushion& cushion) {
-  std::vector<std::string> airs;
-  for (const ChamberSettings& chamber : cushion.chambers) {
-    if (cushion.air_of(chamber.name) == chamber.name) airs.push_back(chamber.name);
-  }
-  return airs;
 }
 
 void check_mesh(Reader& reader, const Cushion& cushion, const At<MeshSettings>& mesh) {
@@ -195,37 +179,45 @@ void check_inflate(Reader& reader, const StageSettings& stage, const At<InflateS
     reader.fail_key(reference, reader.title(reference) +
                                    " is for a start from a formfind stage; from mesh the flat plan is the reference");
   }
-  if (inflate->prestress) check_foils(reader, *inflate->prestress, prestress);
 }
 
-// The foil or chamber that a control must name where there are several.
-void check_named(Reader& reader, const std::string& path, const std::string& key,
-                 const std::vector<std::string>& known) {
-  if (reader.given(below(path, key)) || known.size() == 1) return;
-  reader.fail(path, known.empty()
-                        ? fmt::format("the cushion has no {} whose air could be controlled", key)
-                        : fmt::format("`control` lacks the key `{0}`; {0}s: {1}", key, schema::joined(known)));
-}
-
-void check_control(Reader& reader, const Cushion& cushion, const At<PathSettings>& path,
-                   const std::map<std::string, Gas>& gas) {
-  const std::string control = path[&PathSettings::control].path;
-  if (std::holds_alternative<DisplacementControl>(path->control) && reader.knows("foil")) {
-    check_named(reader, control, "foil", reader.names("foil"));
+// The foil or chamber of a control is named where there are several.
+void settle_name(Reader& reader, const std::string& control, const std::string& key,
+                 const std::vector<std::string>& known, std::string& name) {
+  if (!name.empty()) return;
+  if (known.size() == 1) {
+    name = known.front();
+    return;
   }
-  const auto* arc = std::get_if<ArcLengthControl>(&path->control);
-  if (arc != nullptr && arc->needs_chamber()) check_named(reader, control, "chamber", airs_of(cushion));
-  const auto* volume = std::get_if<VolumeControl>(&path->control);
-  if (volume == nullptr) return;
+  reader.fail(control, known.empty()
+                           ? fmt::format("the cushion has no {} whose air could be controlled", key)
+                           : fmt::format("`control` lacks the key `{0}`; {0}s: {1}", key, schema::joined(known)));
+}
+
+void settle_path(Reader& reader, const Cushion& cushion, PathSettings& path, const std::string& at,
+                 const std::map<std::string, Gas>& gas) {
+  const std::string control = At<PathSettings>{path, at}[&PathSettings::control].path;
+  std::vector<Moment>& history = path.history;
+  if (!history.empty() && history.front().time == 0 && history.front().factor == 0) {
+    history.erase(history.begin()); // the beginning, said
+  }
+  auto* displacement = std::get_if<DisplacementControl>(&path.control);
+  if (displacement != nullptr && reader.knows("foil")) {
+    settle_name(reader, control, "foil", reader.names("foil"), displacement->foil);
+  }
   const std::vector<std::string> airs = airs_of(cushion);
-  check_named(reader, control, "chamber", airs);
-  const std::string named = reader.written(below(control, "chamber"));
-  const std::string air = !named.empty() ? cushion.air_of(named) : airs.size() == 1 ? airs.front() : "";
-  const auto law = gas.find(air);
+  auto* arc = std::get_if<ArcLengthControl>(&path.control);
+  if (arc != nullptr && arc->needs_chamber() && !arc->chamber) {
+    settle_name(reader, control, "chamber", airs, arc->chamber.emplace());
+  }
+  auto* volume = std::get_if<VolumeControl>(&path.control);
+  if (volume == nullptr) return;
+  settle_name(reader, control, "chamber", airs, volume->chamber);
+  const auto law = gas.find(cushion.air_of(volume->chamber));
   if (law == gas.end() || std::holds_alternative<RegulatedGas>(law->second)) return;
   reader.fail(below(control, "chamber"),
               fmt::format("the volume of `{}` cannot be controlled: its gas (`law: {}`) decides it; allowed: regulated",
-                          air, std::holds_alternative<ClosedGas>(law->second) ? "closed" : "volume"));
+                          law->first, std::holds_alternative<ClosedGas>(law->second) ? "closed" : "volume"));
 }
 
 void check_loaded_foil(Reader& reader, const Cushion& cushion, const At<Load>& load) {
@@ -246,8 +238,61 @@ void check_loaded_foil(Reader& reader, const Cushion& cushion, const At<Load>& l
   }
 }
 
-void check_wind(Reader& reader, const Cushion& cushion, const At<WindSettings>& wind) {
-  const auto gas = wind[&WindSettings::gas];
+// What a stage says about foils, chambers and edges; what a user left open is put in place.
+void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, const MeshSettings& mesh) {
+  if (!reader.given("cushion.plan") || !reader.is_whole("cushion.plan")) return;
+  check_mesh(reader, workflow.cushion, {mesh, path_of(stage)});
+}
+
+void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, FormfindSettings& form) {
+  if (!reader.is_whole("cushion")) return;
+  const std::string path = path_of(stage);
+  const At<FormfindSettings> at{form, path};
+  settle_pressures(reader, workflow.cushion, form.gauge_pressure, at[&FormfindSettings::gauge_pressure].path);
+  if (!form.stress) return;
+  reader.came_from(at[&FormfindSettings::prestress].path, at[&FormfindSettings::stress].path);
+  for (const FoilSettings& foil : workflow.cushion.foils) {
+    form.prestress[foil.name] = (*form.stress)[foil.name] * foil.thickness;
+  }
+  form.stress.reset();
+}
+
+// Which foils are flat and need no curves only the stage knows; those it is told to cut do.
+void settle(Reader& reader, const Workflow&, const StageSettings& stage, PatternSettings& pattern) {
+  if (!pattern.foils || pattern.curves.empty() || !reader.knows("foil")) return;
+  const std::vector<std::string>& cut = *pattern.foils;
+  const std::string path = path_of(stage);
+  const auto curves = At<PatternSettings>{pattern, path}[&PatternSettings::curves];
+  for (const std::string& foil : cut) {
+    if (curves->contains(foil) || !schema::is_among(foil, reader.names("foil"))) continue;
+    reader.fail(curves.path, fmt::format("{} says nothing about the foil `{}` of {}; name it, or use `all`",
+                                         reader.title(curves.path), foil, schema::name(&PatternSettings::foils)));
+  }
+  std::erase_if(pattern.curves, [&](const auto& one) {
+    if (schema::is_among(one.first, cut)) return false;
+    const std::string own = below(curves.path, one.first);
+    if (!reader.given(own)) return true; // of all
+    reader.fail_key(own, fmt::format("{} does not name `{}`, so its curves have no effect; foils to be cut: {}",
+                                     schema::name(&PatternSettings::foils), one.first, fmt::join(cut, ", ")));
+    return true;
+  });
+}
+
+void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, InflateSettings& inflate) {
+  const std::string path = path_of(stage);
+  const At<InflateSettings> at{inflate, path};
+  check_inflate(reader, stage, at);
+  if (!reader.is_whole("cushion")) return;
+  settle_pressures(reader, workflow.cushion, inflate.gauge_pressure, at[&InflateSettings::gauge_pressure].path);
+  settle_path(reader, workflow.cushion, inflate, path, {});
+}
+
+void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, WindSettings& wind) {
+  if (!reader.is_whole("cushion")) return;
+  const Cushion& cushion = workflow.cushion;
+  const std::string path = path_of(stage);
+  const At<WindSettings> at{wind, path};
+  const auto gas = at[&WindSettings::gas];
   for (const auto& [chamber, law] : gas.value) {
     const std::string& air = cushion.air_of(chamber);
     if (air == chamber) continue;
@@ -255,25 +300,10 @@ void check_wind(Reader& reader, const Cushion& cushion, const At<WindSettings>& 
         gas.at(law, chamber).path,
         fmt::format("`{}` is connected to `{}` and has no air of its own; say the law of `{}`", chamber, air, air));
   }
-  for (const At<Load>& load : items(wind[&WindSettings::loads])) check_loaded_foil(reader, cushion, load);
-}
-
-void check_pattern(Reader& reader, const At<PatternSettings>& pattern) {
-  if (!pattern->foils || pattern->curves.empty()) return;
-  const std::vector<std::string>& cut = *pattern->foils;
-  const auto curves = pattern[&PatternSettings::curves];
-  // which foils are flat and need no curves only the stage knows; those it is told to cut do
-  for (const std::string& foil : cut) {
-    if (curves->contains(foil) || curves->contains(all)) continue;
-    reader.fail(curves.path, fmt::format("{} says nothing about the foil `{}` of {}; name it, or use `all`",
-                                         reader.title(curves.path), foil, schema::name(&PatternSettings::foils)));
-  }
-  for (const auto& [foil, lines] : curves.value) {
-    if (foil == all || std::find(cut.begin(), cut.end(), foil) != cut.end()) continue;
-    reader.fail_key(curves.at(lines, foil).path,
-                    fmt::format("{} does not name `{}`, so its curves have no effect; foils to be cut: {}",
-                                schema::name(&PatternSettings::foils), foil, fmt::join(cut, ", ")));
-  }
+  for (const At<Load>& load : items(at[&WindSettings::loads])) check_loaded_foil(reader, cushion, load);
+  for (const std::string& air : airs_of(cushion)) wind.gas.emplace(air, RegulatedGas{});
+  for (const Load& load : wind.loads) wind.factors.emplace(load.name, 1);
+  settle_path(reader, cushion, wind, path, wind.gas);
 }
 
 // The loads that act when a stage begins are those of the wind stages before it. Stages by their number.
@@ -337,33 +367,17 @@ private:
 
 } // namespace
 
-void check_stages(Reader& reader, const Workflow& workflow) {
-  const Cushion& cushion = workflow.cushion;
-  const bool cushion_known = reader.is_whole("cushion");
-  for (const StageSettings& stage : workflow.stages) {
-    const std::string path = path_of(stage);
-    if (const auto* form = std::get_if<FormfindSettings>(&stage.settings)) {
-      const At<FormfindSettings> at{*form, path};
-      check_foils(reader, form->prestress, at[&FormfindSettings::prestress].path);
-      if (form->stress) check_foils(reader, *form->stress, at[&FormfindSettings::stress].path);
-      if (cushion_known) {
-        check_pressures(reader, cushion, form->gauge_pressure, at[&FormfindSettings::gauge_pressure].path);
-      }
-    } else if (const auto* inflate = std::get_if<InflateSettings>(&stage.settings)) {
-      const At<InflateSettings> at{*inflate, path};
-      check_inflate(reader, stage, at);
-      if (!cushion_known) continue;
-      check_pressures(reader, cushion, inflate->gauge_pressure, at[&InflateSettings::gauge_pressure].path);
-      check_control(reader, cushion, {*inflate, path}, {});
-    } else if (const auto* wind = std::get_if<WindSettings>(&stage.settings)) {
-      if (!cushion_known) continue;
-      check_wind(reader, cushion, {*wind, path});
-      check_control(reader, cushion, {*wind, path}, wind->gas);
-    } else if (const auto* pattern = std::get_if<PatternSettings>(&stage.settings)) {
-      check_pattern(reader, {*pattern, path});
-    } else if (reader.given("cushion.plan") && reader.is_whole("cushion.plan")) {
-      check_mesh(reader, cushion, {std::get<MeshSettings>(stage.settings), path});
-    }
+void settle(Reader& reader, Workflow& workflow) {
+  Cushion& cushion = workflow.cushion;
+  for (const std::string& edge : reader.names("edge")) cushion.edges.emplace(edge, "clamped");
+  for (ChamberSettings& chamber : cushion.chambers) {
+    const auto& foils = reader.names("foil");
+    const auto at = [&](const std::string& wall) { return std::find(foils.begin(), foils.end(), wall); };
+    auto& [first, second] = chamber.between;
+    if (at(second) < at(first)) std::swap(first, second);
+  }
+  for (StageSettings& stage : workflow.stages) {
+    std::visit([&](auto& settings) { settle(reader, workflow, stage, settings); }, stage.settings);
   }
   if (!reader.is_whole("stages")) return;
   const LoadsBefore loads(reader, workflow.stages);

@@ -15,11 +15,8 @@ Form<StageSettings> stage_form(bool is_stage_file);
 // stages as they stand in the file, those with faults too.
 void link(Reader& reader, const yaml::Node& written, std::vector<StageSettings>& stages);
 
-// Rules between the stages and the cushion, of complete ones.
-void check_stages(Reader& reader, const Workflow& workflow);
-
-// Puts in place what the user left open or said for all: every foil, chamber, edge and load has its own value then.
-// Needs a workflow without fault.
-void complete(Reader& reader, Workflow& workflow);
+// Rules between the stages and the cushion, of complete ones. Puts in place what the user left open: in a workflow
+// without fault every foil, chamber, edge and load has its own value then.
+void settle(Reader& reader, Workflow& workflow);
 
 } // namespace pneuma::pipeline::workflow

@@ -123,7 +123,7 @@ const Bad cases[] = {
     {"UnknownEdge",
      "{all: clamped}",
      "{all: clamped, @suoth: clamped}",
-     {"the plan has no edge `suoth`; did you mean `south`?; its edges: south, east, north, west"}},
+     {"there is no edge `suoth`; did you mean `south`?; edges: south, east, north, west"}},
     {"FreeEdge",
      "{all: clamped}",
      "{south: @free}",
@@ -168,7 +168,7 @@ const Bad cases[] = {
      "{shape: rectangle, length: 6 m, width: 3 m}\n  edges: {all: clamped}\n",
      "{shape: polygon, points: [[0 m, 0 m], [2 m, 0 m], [2 m, 2 m], [0 m, 1 m]]}\n  edges: {e1: clamped, @e5: "
      "clamped}\n",
-     {"the plan has no edge `e5`; did you mean `e1`?; its edges: e1, e2, e3, e4"}},
+     {"there is no edge `e5`; did you mean `e1`?; edges: e1, e2, e3, e4"}},
     {"TriangleWithoutSize",
      "{shape: rectangle, length: 6 m, width: 3 m}",
      "@{shape: triangle}",
