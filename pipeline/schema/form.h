@@ -49,6 +49,10 @@ struct Form {
   Form usual(double min, double max, const std::string& words) const { // outside is a warning
     return changed([&](Option& o) { o.usually = Range{min, max, words}; });
   }
+  // Values of a short form are written in another, at a path from the map around.
+  Form stands_for(const std::string& other) const {
+    return changed([&](Option& o) { o.stands_for = other; });
+  }
   Form such_as(const std::string& example) const {
     return changed([&](Option& o) { o.example = example; });
   }
@@ -112,7 +116,7 @@ Form<std::string> reference_to(const std::string& kind, const std::string& other
 
 Node list_of(std::vector<Node> items);
 
-// The same value as another type.
+// The same value as another type; where `from` gives a pointer and that is null, the value is absent.
 template <class U, class T, class To, class From>
 Form<U> mapped(const Form<T>& form, const To& to, const From& from) {
   return form_of<U>(
@@ -124,20 +128,39 @@ Form<U> mapped(const Form<T>& form, const To& to, const From& from) {
         return true;
       },
       [access = form.access, from](const U& value) {
-        const T one = from(value);
-        return access->write(&one);
+        const auto one = from(value);
+        if constexpr (!std::is_pointer_v<decltype(from(value))>)
+          return access->write(&one);
+        else
+          return one != nullptr ? access->write(one) : std::nullopt;
       });
 }
 
 // A value that may be absent.
 template <class T>
 Form<std::optional<T>> maybe(const Form<T>& form) {
-  const auto read = mapped<std::optional<T>>(
-      form, [](const T& value) { return std::optional<T>(value); }, [](const auto& value) { return *value; });
-  return form_of<std::optional<T>>(
-      form.option,
-      [access = read.access](const Source& source, std::optional<T>& value) { return access->read(source, &value); },
-      [access = form.access](const std::optional<T>& value) { return value ? access->write(&*value) : std::nullopt; });
+  return mapped<std::optional<T>>(
+      form, [](const T& value) { return std::optional<T>(value); },
+      [](const std::optional<T>& value) { return value ? &*value : nullptr; });
+}
+
+// A list, table or text that is absent where it is empty.
+template <class T>
+Form<T> unless_empty(const Form<T>& form) {
+  return mapped<T>(form, std::identity(), [](const T& value) { return value.empty() ? nullptr : &value; });
+}
+
+// A struct of which this is the only member.
+template <class S, class V>
+Form<S> wrapped(V S::*member, const Form<V>& form) {
+  return mapped<S>(
+      form,
+      [member](const V& value) {
+        S whole{};
+        whole.*member = value;
+        return whole;
+      },
+      [member](const S& whole) { return whole.*member; });
 }
 
 template <class T>
@@ -284,11 +307,11 @@ Form<std::optional<T>> word_or(const std::string& word, const std::string& text,
   return either<Maybe>({none, maybe(form)}, [](const Maybe& value) { return value ? 1 : 0; });
 }
 
-// An alternative of a std::variant.
+// An alternative of a std::variant; of another one the value is absent.
 template <class Variant, class T>
 Form<Variant> as(const Form<T>& form) {
   return mapped<Variant>(
-      form, [](const T& value) { return Variant(value); }, [](const Variant& value) { return std::get<T>(value); });
+      form, [](const T& value) { return Variant(value); }, [](const Variant& value) { return std::get_if<T>(&value); });
 }
 
 } // namespace pneuma::pipeline::schema

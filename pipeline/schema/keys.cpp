@@ -48,6 +48,7 @@ bool AnyKeys::read(const Source& source, void* owner) const {
     const Node* given = find(source.node, key.option.name);
     const bool good = given != nullptr && key.access->read({reader, key.option, *given, path}, key.target(owner));
     if (!good && !key.option.defines.empty()) reader.cannot_know(key.option.defines);
+    if (good && !key.option.stands_for.empty()) reader.came_from(below(source.path, key.option.stands_for), path);
     if (good) continue;
     if (given != nullptr) {
       reader.spoil(path);

@@ -119,6 +119,9 @@ public:
   Declared operator()(const std::string& name, V B::*member, const Form<V>& form, const std::string& text) {
     Key key{form.named(name, text).option, form.access, {}, true, {}, "", false};
     key.option.is_required = key.option.default_value.empty();
+    if constexpr (requires(const V& value) { value.empty(); }) {
+      if (key.option.is_required) key.access = unless_empty(form).access;
+    }
     key.target = [member](void* owner) -> void* { return &(static_cast<T*>(owner)->*member); };
     return {list.emplace_back(std::move(key))};
   }
@@ -127,23 +130,10 @@ public:
                       const std::string& text) {
     return (*this)(name, member, maybe(form), text).or_another();
   }
-  // A key that is turned into what a T holds; `get` gives it back, or nothing where it is written under another name.
-  template <class V, class Set, class Get>
-  Declared computed(const std::string& name, const Form<V>& form, const Set& set, const Get& get,
-                    const std::string& text) {
-    const auto read = [access = form.access, set](const Source& source, T& owner) {
-      V one{};
-      if (!access->read(source, &one)) return false;
-      set(owner, std::move(one));
-      return true;
-    };
-    const auto write = [access = form.access, get](const T& owner) {
-      const std::optional<V> one = get(owner);
-      return one ? access->write(&*one) : std::nullopt;
-    };
-    const Form<T> whole = form_of<T>(form.named(name, text).option, read, write);
-    return {
-        list.emplace_back(Key{whole.option, whole.access, [](void* owner) { return owner; }, false, {}, "", false})};
+  // A key that fills the whole owner.
+  Declared operator()(const std::string& name, const Form<T>& form, const std::string& text) {
+    const auto whole = [](void* owner) { return owner; };
+    return {list.emplace_back(Key{form.named(name, text).option, form.access, whole, false, {}, "", false})};
   }
 
   // Also the keys of an A: `variant_of` an owner, or a member of it, is a std::variant.
@@ -166,7 +156,8 @@ public:
   std::string name_of(V B::*member) const {
     static T probe{};
     for (const Key& key : list) {
-      if (key.is_member && key.target(&probe) == static_cast<void*>(&(probe.*member))) return key.option.name;
+      if (key.is_member && key.option.stands_for.empty() && key.target(&probe) == static_cast<void*>(&(probe.*member)))
+        return key.option.name;
     }
     throw std::logic_error("a member without a key");
   }

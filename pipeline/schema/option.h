@@ -75,6 +75,7 @@ struct Option {
   std::size_t max_items = std::numeric_limits<std::size_t>::max();
   std::vector<KeySet> alternatives; // of a group
   std::string defines;              // kind of thing ("foil") that gets its name here
+  std::string stands_for;           // of a short form: the key, or a path from it, that is written
 
   // Words of a choice, item of a list or table, kinds, keys of a group, groups of a variant. Shared by copies.
   const std::vector<Option>& members() const;

@@ -106,23 +106,20 @@ void declare(Keys<geometry::Circle>& keys) {
 
 void declare(Keys<geometry::Triangle>& keys) {
   using geometry::Triangle;
-  keys.computed(
-      "side", length(), [](Triangle& plan, double side) { plan = geometry::equilateral(side); },
-      [](const Triangle&) { return std::optional<double>(); }, "of an equilateral triangle");
-  keys.computed(
-      "points", points(3).items(3, 3).judged(ring_fault),
-      [](Triangle& plan, const std::vector<base::Vec2>& p) { std::copy(p.begin(), p.end(), plan.points); },
-      [](const Triangle& plan) {
-        return std::optional(std::vector<base::Vec2>(std::begin(plan.points), std::end(plan.points)));
-      },
+  const auto no_side = [](const Triangle&) -> const double* { return nullptr; };
+  keys("side", mapped<Triangle>(length(), geometry::equilateral, no_side).stands_for("points"),
+       "of an equilateral triangle");
+  keys(
+      "points",
+      mapped<Triangle>(
+          points(3).items(3, 3).judged(ring_fault),
+          [](const std::vector<base::Vec2>& p) {
+            return Triangle{{p[0], p[1], p[2]}};
+          },
+          [](const Triangle& plan) { return std::vector<base::Vec2>(std::begin(plan.points), std::end(plan.points)); }),
       "the three corners");
   keys.is("triangle", "edges e1, e2, e3");
   keys.exactly_one({"side", "points"});
-  keys.rule([](Reader& reader, const At<Triangle>& plan) {
-    if (reader.given(below(plan.path, "side"))) {
-      reader.came_from(below(plan.path, "points"), below(plan.path, "side"));
-    }
-  });
 }
 
 void declare(Keys<geometry::Polygon>& keys) {

@@ -31,6 +31,7 @@ using schema::text;
 using schema::tuple;
 using schema::word;
 using schema::word_or;
+using schema::wrapped;
 
 inline Form<double> length() {
   return quantity("m").positive().usual(0.01, 100, "usually 1 cm to 100 m").such_as("6 m");

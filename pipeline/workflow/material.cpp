@@ -56,13 +56,12 @@ void add_temperatures(Keys<Material>& keys) {
     }
     return complete;
   };
-  const auto all = list(item).items(1, 1000).named(
-      "temperature", "the law at other temperatures; linear between neighbours, an error outside");
+  const auto all = list(item).items(1, 1000);
   const auto write = [all](const Material& material) {
     return material.other.empty() ? std::optional<yaml::Node>() : all.write(material.other);
   };
-  const Form<Material> form = schema::form_of<Material>(all.option, read, write);
-  keys.list.push_back({form.option, form.access, [](void* owner) { return owner; }, false, {}, "", false});
+  keys("temperature", schema::form_of<Material>(all.option, read, write),
+       "the law at other temperatures; linear between neighbours, an error outside");
 }
 
 // The keys of one law in a material.

@@ -213,21 +213,17 @@ struct TableLaw {
     const auto of_tests = [](const auto& law) { return !law.data.empty() || !law.shear_data.empty(); };
 
     keys("data", &TableLaw::data, files(), "points of tests: strain_1, strain_2, stress_1, stress_2 and perhaps weight")
-        .or_another()
-        .where([](const auto& law) { return !law.data.empty(); }, "");
+        .or_another();
     keys("points", &TableLaw::points, list(point.named("row", "a point")).items(1, 100000),
          "such points in place: Green-Lagrange strains, second Piola-Kirchhoff stresses in Pa, weight")
-        .or_another()
-        .where([](const auto& law) { return !law.points.empty(); }, "");
+        .or_another();
     if (along_axes) {
       keys("shear_data", &TableLaw::shear_data, files(),
            "points of shear tests: shear_strain (2 E12), shear_stress (S12)")
-          .or_another()
-          .where([](const auto& law) { return !law.shear_data.empty(); }, "");
+          .or_another();
       keys("shear_points", &TableLaw::shear_points, list(shear_point.named("row", "a point")).items(1, 100000),
            "such points in place: 2 E12, S12 in Pa, weight")
-          .or_another()
-          .where([](const auto& law) { return !law.shear_points.empty(); }, "");
+          .or_another();
       keys.not_both("shear_data", "shear_points");
     }
     keys("measure", &TableLaw::measure,

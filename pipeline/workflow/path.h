@@ -151,18 +151,20 @@ struct PathSettings {
          "how the path is followed");
     const auto under_load = [](const auto& path) { return std::holds_alternative<LoadControl>(path.control); };
     const char* no_time = "is for load control: on the path of another no time passes";
-    keys.computed(
-            "duration", quantity("s").positive().usual(1e-3, 1e10, "usually from milliseconds to 100 years"),
-            [](auto& path, double duration) {
-              path.history = {{duration, 1}};
-            },
-            [](const auto&) { return std::optional<double>(); },
-            "in which all that the stage states grows evenly; without it no time passes")
+    const auto evenly = mapped<std::vector<Moment>>(
+        quantity("s").positive().usual(1e-3, 1e10, "usually from milliseconds to 100 years"),
+        [](double duration) {
+          return std::vector<Moment>{{duration, 1}};
+        },
+        [](const auto&) -> const double* { return nullptr; });
+    keys("duration", &Self::history, evenly.stands_for("history.0.time"),
+         "in which all that the stage states grows evenly; without it no time passes")
+        .or_another()
         .where(under_load, no_time);
     keys("history", &Self::history, list(group<Moment>().named("moment", "a moment")).items(1, 100000),
          "what acts when, from nothing at 0 s, linear between")
         .or_another()
-        .where([=](const auto& path) { return under_load(path) && !path.history.empty(); }, no_time);
+        .where(under_load, no_time);
     keys("options", &Self::options, group<PathOptions>().otherwise("{}"), "of the solver");
     keys.not_both("duration", "history");
   }

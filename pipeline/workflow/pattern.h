@@ -120,8 +120,7 @@ struct PatternSettings {
               false) // of those that are cut
              .items(1, 1000),
          "the seams")
-        .or_another()
-        .where([](const auto& pattern) { return !pattern.curves.empty(); }, "");
+        .or_another();
     const auto compensated_by =
         choice<CompensatedBy>({{"none", CompensatedBy::nothing, "the strips are as large as the form"},
                                {"elastic", CompensatedBy::strain, "by the strain of the form's prestress"}});

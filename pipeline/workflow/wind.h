@@ -89,29 +89,16 @@ struct Load {
   static void declare(auto& keys) {
     keys("name", &Load::name, word(), "of the load");
     keys("foil", &Load::foil, reference_to("foil"), "it acts on");
-    keys.computed(
-        "wind", quantity("Pa").usual(-10000, 10000, "usually up to 10 kPa"),
-        [](auto& load, double pressure) { load.kind = WindLoad{pressure}; },
-        [](const auto& load) {
-          const auto* wind = std::get_if<WindLoad>(&load.kind);
-          return wind != nullptr ? std::optional<double>(wind->pressure) : std::nullopt;
-        },
-        "positive pushes against the face, negative is suction; follows the foil");
-    keys.computed(
-        "snow", quantity("Pa").at_least(0, "at least 0 Pa").usual(0, 20000, "usually up to 20 kPa"),
-        [](auto& load, double weight) { load.kind = SnowLoad{weight}; },
-        [](const auto& load) {
-          const auto* snow = std::get_if<SnowLoad>(&load.kind);
-          return snow != nullptr ? std::optional<double>(snow->weight) : std::nullopt;
-        },
-        "weight per plan area, straight down");
-    keys.computed(
-        "patch", group<PatchLoad>(), [](auto& load, const PatchLoad& patch) { load.kind = patch; },
-        [](const auto& load) {
-          const auto* patch = std::get_if<PatchLoad>(&load.kind);
-          return patch != nullptr ? std::optional<PatchLoad>(*patch) : std::nullopt;
-        },
-        "a dead force spread over a rectangle in plan");
+    using Kind = decltype(kind);
+    const auto wind = quantity("Pa").usual(-10000, 10000, "usually up to 10 kPa");
+    const auto snow = quantity("Pa").at_least(0, "at least 0 Pa").usual(0, 20000, "usually up to 20 kPa");
+    keys("wind", &Load::kind, schema::as<Kind>(wrapped(&WindLoad::pressure, wind)),
+         "positive pushes against the face, negative is suction; follows the foil")
+        .or_another();
+    keys("snow", &Load::kind, schema::as<Kind>(wrapped(&SnowLoad::weight, snow)), "weight per plan area, straight down")
+        .or_another();
+    keys("patch", &Load::kind, schema::as<Kind>(group<PatchLoad>()), "a dead force spread over a rectangle in plan")
+        .or_another();
     keys("region", &Load::region,
          word_or("all", "all of the foil", group<Region>().named("part", "a part in plan")).otherwise("all"),
          "where it acts");
