@@ -147,7 +147,10 @@ Form<std::optional<T>> maybe(const Form<T>& form) {
 // A list, table or text that is absent where it is empty.
 template <class T>
 Form<T> unless_empty(const Form<T>& form) {
-  return mapped<T>(form, std::identity(), [](const T& value) { return value.empty() ? nullptr : &value; });
+  const auto write = [access = form.access](const void* value) {
+    return static_cast<const T*>(value)->empty() ? std::nullopt : access->write(value);
+  };
+  return {form.option, std::make_shared<Access>(Access{form.access->read, write})};
 }
 
 // A struct of which this is the only member.

@@ -34,16 +34,20 @@ std::string fit_of(const Materials& materials, const std::string& name) {
 
 } // namespace
 
+const yaml::Node& read_file(Reader& reader, const std::filesystem::path& file, const Mark& named) {
+  const std::string text = yaml::read_text(file, named, reader.problems);
+  yaml::Node tree = yaml::parse_yaml(text, file.generic_string(), reader.problems);
+  yaml::drop_templates(tree);
+  return reader.keep(std::move(tree));
+}
+
 void define_materials(Reader& reader, const yaml::Node& map) {
   for (const yaml::Entry& entry : map.entries) reader.define("material", entry.key, entry.mark);
 }
 
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out) {
   const std::size_t before = reader.problems.size();
-  const std::string text = yaml::read_text(file, named, reader.problems);
-  yaml::Node parsed = yaml::parse_yaml(text, file.generic_string(), reader.problems);
-  yaml::drop_templates(parsed);
-  const yaml::Node& tree = reader.keep(std::move(parsed));
+  const yaml::Node& tree = read_file(reader, file, named);
   if (reader.problems.size() > before && tree.kind == NodeKind::null) return reader.cannot_know("material");
   if (tree.kind != NodeKind::map) {
     reader.cannot_know("material");
@@ -56,6 +60,9 @@ void read_materials_file(Reader& reader, const std::filesystem::path& file, cons
   out.merge(read);
 }
 
+namespace {
+
+// It exists, has no rate and no axes of its own, and does not go in a circle.
 void check_fits(Reader& reader, const Materials& materials) {
   std::map<std::string, std::string> fits;
   for (const std::string& name : reader.names("material")) fits[name] = fit_of(materials, name);
@@ -89,6 +96,8 @@ void check_fits(Reader& reader, const Materials& materials) {
     }
   }
 }
+
+} // namespace
 
 std::set<std::string> with_fits(const Materials& materials, const std::vector<std::string>& names) {
   std::set<std::string> found;
@@ -125,8 +134,7 @@ void check_range(Reader& reader, const TableLaw& law, const std::string& path) {
   }
 }
 
-} // namespace
-
+// Reads the points of a table's files of tests.
 void read_tests(Reader& reader, Material& material, std::optional<double> of_site) {
   auto* law = std::get_if<TableLaw>(&material.law);
   if (law == nullptr || reader.is_stage_file()) return;
@@ -163,6 +171,7 @@ void read_tests(Reader& reader, Material& material, std::optional<double> of_sit
   law->shear_data.clear();
 }
 
+// Fills in where the user has its values.
 void find_places(const Reader& reader, Material& material) {
   static const Form<Material> form = workflow::material();
   const std::string path = path_of(material.name);
@@ -173,6 +182,20 @@ void find_places(const Reader& reader, Material& material) {
     if (key.starts_with("points.") || key.starts_with("shear_points.")) continue;
     if (const std::optional<Mark> place = reader.origin(path + "." + key)) material.places[key] = *place;
   }
+}
+
+} // namespace
+
+std::set<std::string> settle_materials(Reader& reader, Materials& materials, const std::vector<std::string>& names,
+                                       std::optional<double> of_site) {
+  for (auto& [name, material] : materials) material.name = name;
+  check_fits(reader, materials);
+  std::set<std::string> used = with_fits(materials, names);
+  for (auto& [name, material] : materials) {
+    if (used.contains(name)) read_tests(reader, material, of_site);
+    find_places(reader, material);
+  }
+  return used;
 }
 
 } // namespace pneuma::pipeline::workflow

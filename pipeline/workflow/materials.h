@@ -17,16 +17,16 @@ void define_materials(Reader& reader, const yaml::Node& map);
 // Reads the materials of a file, which is named at a place: those without fault.
 void read_materials_file(Reader& reader, const std::filesystem::path& file, const Mark& named, Materials& out);
 
-// What tables are fitted to exists, has no rate and no axes of its own, and does not go in a circle.
-void check_fits(Reader& reader, const Materials& materials);
+// The tree of a file, kept by the reader, without templates; one that cannot be read is a problem at a place.
+const yaml::Node& read_file(Reader& reader, const std::filesystem::path& file, const Mark& named);
 
 // These materials and those that they are fitted to.
 std::set<std::string> with_fits(const Materials& materials, const std::vector<std::string>& names);
 
-// Reads the points of a table's files of tests; `of_site`: temperature there, K, where a site is known.
-void read_tests(Reader& reader, Material& material, std::optional<double> of_site);
-
-// Fills in where the user has its values.
-void find_places(const Reader& reader, Material& material);
+// Checks what tables are fitted to, reads the tests of the materials of these names and finds out where the user has
+// the values of all. Returns those names and what they are fitted to. `of_site`: temperature there, K, where a site is
+// known.
+std::set<std::string> settle_materials(Reader& reader, Materials& materials, const std::vector<std::string>& names,
+                                       std::optional<double> of_site);
 
 } // namespace pneuma::pipeline::workflow

@@ -61,8 +61,9 @@ void File::declare(schema::Keys<File>& keys, bool is_stage_file) {
   keys("cushion", &File::cushion, group<Cushion>(), "what is built");
   auto mesh = keys("mesh", &File::mesh, group<MeshSettings>(), "the mesh all foils get");
   mesh.key.option.is_required = !is_stage_file;
-  keys("stages", &File::stages, table(stage_form(is_stage_file).named("ID", "a stage")).otherwise("{}"),
-       "the stages by their IDs");
+  const auto stages_by_id = table(stage_form(is_stage_file).named("ID", "a stage"));
+  keys("stages", &File::stages, is_stage_file ? stages_by_id : stages_by_id.otherwise("{}"), "the stages by their IDs")
+      .or_another();
   if (is_stage_file) return;
   const char* stage = "loads stand in a wind stage";
   keys.unavailable("loads", stage);
@@ -81,14 +82,15 @@ const Form<File>& file_form(bool is_stage_file) {
   return is_stage_file ? stage : user;
 }
 
-bool is_error(const Problem& problem) {
-  return problem.error;
+bool has_errors(const std::vector<Problem>& problems) {
+  return std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.error; });
 }
 
 // In the order of the files and in each from top to bottom; the same once.
-void put_in_order(std::vector<Problem>& problems, const std::string& first_file) {
-  const auto key = [&](const Problem& p) {
-    return std::tuple(p.mark.file != first_file, p.mark.file, p.mark.line, p.mark.column);
+std::vector<Problem> in_order(Reader& reader, const std::filesystem::path& first_file) {
+  std::vector<Problem> problems = std::move(reader.problems);
+  const auto key = [first = first_file.generic_string()](const Problem& p) {
+    return std::tuple(p.mark.file != first, p.mark.file, p.mark.line, p.mark.column);
   };
   std::stable_sort(problems.begin(), problems.end(),
                    [&](const Problem& a, const Problem& b) { return key(a) < key(b); });
@@ -96,16 +98,12 @@ void put_in_order(std::vector<Problem>& problems, const std::string& first_file)
     return to_string(a.mark) == to_string(b.mark) && a.message == b.message;
   };
   problems.erase(std::unique(problems.begin(), problems.end(), same), problems.end());
-  if (problems.size() <= most_problems) return;
-  const std::size_t more = problems.size() - most_problems;
-  const bool hides_error =
-      std::any_of(problems.begin() + static_cast<std::ptrdiff_t>(most_problems), problems.end(), is_error);
+  if (problems.size() <= most_problems) return problems;
+  const std::vector<Problem> more(problems.begin() + static_cast<std::ptrdiff_t>(most_problems), problems.end());
   problems.resize(most_problems);
-  problems.push_back({problems.back().mark, fmt::format("and {} more problems behind this one", more), hides_error});
-}
-
-bool has_errors(const std::vector<Problem>& problems) {
-  return std::any_of(problems.begin(), problems.end(), is_error);
+  problems.push_back(
+      {problems.back().mark, fmt::format("and {} more problems behind this one", more.size()), has_errors(more)});
+  return problems;
 }
 
 // "cushion.yaml:14:22" -> Mark
@@ -157,16 +155,10 @@ void read_materials_of(Reader& reader, File& file, const Node& tree, Workflow& o
     };
     for (std::size_t i = 0; i < files->size(); ++i) read((*files)[i], node->items.empty() ? *node : node->items[i]);
   }
-  for (auto& [name, material] : out.materials) material.name = name;
-  check_fits(reader, out.materials);
   std::vector<std::string> of_foils;
   for (const FoilSettings& foil : out.cushion.foils) of_foils.push_back(foil.material);
-  const std::set<std::string> used = with_fits(out.materials, of_foils);
+  const std::set<std::string> used = settle_materials(reader, out.materials, of_foils, out.site.temperature);
   std::erase_if(out.materials, [&](const auto& item) { return !used.contains(item.first); });
-  for (auto& [name, material] : out.materials) {
-    read_tests(reader, material, out.site.temperature);
-    find_places(reader, material);
-  }
 }
 
 void check_gravity(Reader& reader, const Workflow& workflow) {
@@ -197,38 +189,41 @@ void read_stages(File& file, const Node& tree, Workflow& out) {
   }
 }
 
-Node stage_node(const StageSettings& stage) {
-  static const Form<StageSettings> form = stage_form(true);
-  return form.write(stage);
-}
-
-// The tree of stage.yaml without its head.
-Node settings_node(const Workflow& workflow, const StageSettings* stage) {
+// The tree of stage.yaml with these stages, without its origins.
+Node stage_node(const Workflow& workflow, const std::vector<StageSettings>& stages) {
   File file;
+  file.format = stage_format;
+  file.name = workflow.name;
   file.site = workflow.site;
   file.cushion = workflow.cushion;
   file.materials = workflow.materials;
-  if (stage != nullptr && stage->run == "mesh") file.mesh = std::get<MeshSettings>(stage->settings);
-  Node node = file_form(true).write(file);
-  node.entries.erase(node.entries.begin(), node.entries.begin() + 2); // format, name
-  node.entries.pop_back();                                            // stages
-  if (stage == nullptr || stage->run == "mesh") return node;
-  Node stages;
-  add(stages, stage->id, stage_node(*stage));
-  add(node, "stages", std::move(stages));
+  for (const StageSettings& stage : stages) {
+    if (const auto* mesh = std::get_if<MeshSettings>(&stage.settings)) {
+      file.mesh = *mesh;
+    } else {
+      file.stages.emplace(stage.id, stage);
+    }
+  }
+  return file_form(true).write(file);
+}
+
+// What decides a result: not the format and the name of the project.
+Node settings_node(const Workflow& workflow, const std::vector<StageSettings>& stages) {
+  Node node = stage_node(workflow, stages);
+  std::erase_if(node.entries, [](const yaml::Entry& entry) { return entry.key == "format" || entry.key == "name"; });
   return node;
 }
 
-void add_origins(const Reader& reader, const Node& node, const std::string& path, Workflow& out) {
+void find_origins(const Reader& reader, Workflow& out) {
   std::map<std::string, std::string> relative; // of each file
-  for (const auto& [leaf, value] : yaml::leaves(node)) {
-    const std::string at = schema::below(path, leaf);
-    std::optional<Mark> mark = reader.origin(at);
+  const Node node = settings_node(out, out.stages);
+  for (const auto& [path, leaf] : yaml::leaves(node)) {
+    std::optional<Mark> mark = reader.origin(path);
     if (!mark) continue;
     const auto [known, is_new] = relative.try_emplace(mark->file);
     if (is_new) known->second = folder_relative(mark->file, out.file.parent_path());
     mark->file = known->second;
-    out.origins[at] = *mark;
+    out.origins[path] = *mark;
   }
 }
 
@@ -248,15 +243,7 @@ Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& pa
   reader.check_references();
   if (reader.is_whole("site")) check_gravity(reader, out);
   settle(reader, out);
-  if (has_errors(reader.problems) || reader.is_stage_file()) return out;
-  add_origins(reader, settings_node(out, nullptr), "", out);
-  for (const StageSettings& stage : out.stages) {
-    if (const auto* mesh = std::get_if<MeshSettings>(&stage.settings)) {
-      add_origins(reader, group<MeshSettings>().write(*mesh), "mesh", out);
-    } else {
-      add_origins(reader, stage_node(stage), "stages." + stage.id, out);
-    }
-  }
+  if (!has_errors(reader.problems) && !reader.is_stage_file()) find_origins(reader, out);
   return out;
 }
 
@@ -264,11 +251,7 @@ Workflow build(Reader& reader, const Node& tree, const std::filesystem::path& pa
 
 ReadResult read_workflow(const std::filesystem::path& file) {
   Reader reader;
-  const std::string name = file.generic_string();
-  const std::string text = yaml::read_text(file, {name, 1, 1}, reader.problems);
-  Node parsed = yaml::parse_yaml(text, name, reader.problems);
-  yaml::drop_templates(parsed);
-  const Node& tree = reader.keep(std::move(parsed));
+  const Node& tree = read_file(reader, file, {file.generic_string(), 1, 1});
   ReadResult result;
   result.workflow.file = file;
   if (tree.kind != NodeKind::null) {
@@ -276,8 +259,7 @@ ReadResult read_workflow(const std::filesystem::path& file) {
   } else if (reader.problems.empty()) {
     reader.fail(tree.mark, "the file is empty; a workflow begins with `pneuma: 1`");
   }
-  result.problems = std::move(reader.problems);
-  put_in_order(result.problems, name);
+  result.problems = in_order(reader, file);
   return result;
 }
 
@@ -285,23 +267,15 @@ MaterialsResult read_materials(const std::filesystem::path& file, const std::vec
   Reader reader;
   MaterialsResult result;
   read_materials_file(reader, file, {file.generic_string(), 1, 1}, result.known);
-  for (auto& [name, material] : result.known) material.name = name;
-  check_fits(reader, result.known);
-  reader.check_references();
   result.names = reader.names("material");
   const std::vector<std::string>& asked = names.empty() ? result.names : names;
-  for (const std::string& name : with_fits(result.known, asked)) {
-    if (const auto found = result.known.find(name); found != result.known.end()) {
-      read_tests(reader, found->second, std::nullopt);
-    }
-  }
-  for (auto& [name, material] : result.known) find_places(reader, material);
+  settle_materials(reader, result.known, asked, std::nullopt);
+  reader.check_references();
   for (const std::string& name : result.names) {
     const auto found = result.known.find(name);
     if (schema::is_among(name, asked) && found != result.known.end()) result.materials.push_back(found->second);
   }
-  result.problems = std::move(reader.problems);
-  put_in_order(result.problems, file.generic_string());
+  result.problems = in_order(reader, file);
   return result;
 }
 
@@ -324,26 +298,20 @@ Workflow read_stage(const std::filesystem::path& file) {
   if (!has_errors(reader.problems) && workflow.stages.size() != 1) {
     reader.fail(Mark{name, 1, 1}, fmt::format("a stage file holds one stage, not {}", workflow.stages.size()));
   }
-  put_in_order(reader.problems, name);
   std::vector<std::string> errors;
-  for (const Problem& problem : reader.problems) {
+  for (const Problem& problem : in_order(reader, file)) {
     if (problem.error) errors.push_back(to_string(problem));
   }
   if (!errors.empty()) throw base::InputError(fmt::format("{}", fmt::join(errors, "\n")));
   return workflow;
 }
 
-// The name of the project is left out: it changes no result.
 std::string effective_settings(const Workflow& workflow, const StageSettings& stage) {
-  return yaml::write_yaml(settings_node(workflow, &stage));
+  return yaml::write_yaml(settings_node(workflow, {stage}));
 }
 
 std::string stage_yaml(const Workflow& workflow, const StageSettings& stage) {
-  Node node;
-  add(node, "format", yaml::scalar(fmt::format("{}", stage_format)));
-  add(node, "name", yaml::scalar(workflow.name));
-  Node settings = settings_node(workflow, &stage);
-  for (yaml::Entry& entry : settings.entries) node.entries.push_back(std::move(entry));
+  Node node = stage_node(workflow, {stage});
   // where the values come from; what is not listed is a default
   Node origin;
   origin.kind = NodeKind::map;
