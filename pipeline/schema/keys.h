@@ -19,6 +19,9 @@ struct At {
   std::string path;
 
   const T* operator->() const { return &value; }
+  template <class Base>
+  requires std::is_base_of_v<Base, T>
+  operator At<Base>() const { return {value, path}; }
   template <class B, class V>
   At<V> operator[](V B::*member) const {
     return {value.*member, below(path, keys_of<B>().name_of(member))};
@@ -50,7 +53,6 @@ struct Key {
   bool is_member = false;                           // the former
   std::function<bool(const void* owner)> condition; // empty: the key always means something
   std::string otherwise;                            // why it is refused where it means nothing; empty: passed over
-  bool with_temperature = false;                    // a material's: may be another at another temperature
 };
 
 // The keys of a map as data: what Keys<T> (below) declares for a T, of which this knows nothing.
@@ -109,15 +111,11 @@ public:
       key.option.is_required = false;
       return *this;
     }
-    Declared varies_with_temperature() {
-      key.with_temperature = true;
-      return *this;
-    }
   };
 
   template <class B, class V>
   Declared operator()(const std::string& name, V B::*member, const Form<V>& form, const std::string& text) {
-    Key key{form.named(name, text).option, form.access, {}, true, {}, "", false};
+    Key key{form.named(name, text).option, form.access, {}, true, {}, ""};
     key.option.is_required = key.option.default_value.empty();
     if constexpr (requires(const V& value) { value.empty(); }) {
       if (key.option.is_required) key.access = unless_empty(form).access;
@@ -133,7 +131,7 @@ public:
   // A key that fills the whole owner.
   Declared operator()(const std::string& name, const Form<T>& form, const std::string& text) {
     const auto whole = [](void* owner) { return owner; };
-    return {list.emplace_back(Key{form.named(name, text).option, form.access, whole, false, {}, "", false})};
+    return {list.emplace_back(Key{form.named(name, text).option, form.access, whole, false, {}, ""})};
   }
 
   // Also the keys of an A: `variant_of` an owner, or a member of it, is a std::variant.

@@ -26,9 +26,6 @@ struct InflateSettings : PathSettings {
     PathSettings::declare(keys);
     keys.is("inflate", "raises the pressure");
   }
-  static void check(Reader& reader, const At<InflateSettings>& settings) {
-    check_history(reader, {settings.value, settings.path});
-  }
 };
 
 } // namespace pneuma::pipeline::workflow

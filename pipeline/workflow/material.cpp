@@ -30,10 +30,13 @@ void add_temperatures(Keys<Material>& keys) {
   using Entry = Material::AtTemperature;
   Keys<Entry> entry;
   entry("at", &Entry::at, quantity("K").positive(), "the temperature");
-  schema::AnyKeys varying;
-  for (const schema::Key& key : schema::keys_of<L>().list) {
-    if (key.with_temperature) varying.list.emplace_back(key).option.is_required = false;
+  Keys<L> varying;
+  if constexpr (requires { L::declare_varying(varying); }) {
+    L::declare_varying(varying);
+  } else {
+    varying.list = schema::keys_of<L>().list;
   }
+  for (schema::Key& key : varying.list) key.option.is_required = false;
   entry.include(varying, [](void* one) -> void* { return &std::get<L>(static_cast<Entry*>(one)->law); });
   const Form<Entry> item =
       group(entry).named("temperature", "what the law has there; the rest is as in the law itself");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bit>
+
 #include "pipeline/test_data/coverage.h"
 #include "pipeline/test_data/test_data.h"
 #include "pipeline/workflow/forms.h"
@@ -19,14 +21,23 @@ inline Form<double> poissons_ratio() {
   return number().within({-1, 0.5, "above -1, up to 0.5", false, true});
 }
 
+// A struct of numbers, in the order of its members.
+template <class Row>
+Form<Row> row() {
+  using Numbers = std::array<double, sizeof(Row) / sizeof(double)>;
+  return mapped<Row>(tuple<std::tuple_size_v<Numbers>>(number().named("value", "value")), std::bit_cast<Row, Numbers>,
+                     std::bit_cast<Numbers, Row>)
+      .named("row", "a point");
+}
+
 // Isotropic, St. Venant-Kirchhoff.
 struct ElasticLaw {
   double E = 0;  // Pa
   double nu = 0; // -
 
   static void declare(auto& keys) {
-    keys("E", &ElasticLaw::E, youngs_modulus(), "Young's modulus").varies_with_temperature();
-    keys("nu", &ElasticLaw::nu, poissons_ratio(), "Poisson's ratio").varies_with_temperature();
+    keys("E", &ElasticLaw::E, youngs_modulus(), "Young's modulus");
+    keys("nu", &ElasticLaw::nu, poissons_ratio(), "Poisson's ratio");
     keys.is("elastic", "St. Venant-Kirchhoff, isotropic (E, nu) or orthotropic (E1, E2, nu12, G12)");
   }
 };
@@ -39,14 +50,12 @@ struct OrthotropicLaw {
 
   static void declare(auto& keys) {
     using Self = OrthotropicLaw;
-    keys("E1", &Self::E1, youngs_modulus(), "Young's modulus along the warp, of an orthotropic foil")
-        .varies_with_temperature();
-    keys("E2", &Self::E2, youngs_modulus(), "Young's modulus across the warp").varies_with_temperature();
-    keys("nu12", &Self::nu12, number(), "narrowing across the warp in tension along it, nu12^2 < E1 / E2")
-        .varies_with_temperature();
+    keys("E1", &Self::E1, youngs_modulus(), "Young's modulus along the warp, of an orthotropic foil");
+    keys("E2", &Self::E2, youngs_modulus(), "Young's modulus across the warp");
+    keys("nu12", &Self::nu12, number(), "narrowing across the warp in tension along it, nu12^2 < E1 / E2");
     keys("G12", &Self::G12,
-         quantity("Pa").positive().usual(1e5, 1e10, "foils have 0.1 MPa to 10 GPa").such_as("300 MPa"), "shear modulus")
-        .varies_with_temperature();
+         quantity("Pa").positive().usual(1e5, 1e10, "foils have 0.1 MPa to 10 GPa").such_as("300 MPa"),
+         "shear modulus");
     keys.is("elastic", "orthotropic (E1, E2, nu12, G12)", "E1");
   }
 };
@@ -96,12 +105,14 @@ struct J2Law {
   bool logarithmic = false; // large strain; otherwise small strain
   std::optional<ViscositySettings> viscosity;
 
-  static void declare(auto& keys) {
-    keys("E", &J2Law::E, youngs_modulus(), "Young's modulus").varies_with_temperature();
-    keys("nu", &J2Law::nu, poissons_ratio(), "Poisson's ratio").varies_with_temperature();
+  static void declare_varying(auto& keys) { // with temperature
+    keys("E", &J2Law::E, youngs_modulus(), "Young's modulus");
+    keys("nu", &J2Law::nu, poissons_ratio(), "Poisson's ratio");
     keys("hardening", &J2Law::hardening, list(group<HardeningBranch>().named("branch", "a branch")).items(1, 1000),
-         "branches of the yield stress, the last goes on")
-        .varies_with_temperature();
+         "branches of the yield stress, the last goes on");
+  }
+  static void declare(auto& keys) {
+    declare_varying(keys);
     keys("modulus", &J2Law::modulus,
          choice<ModulusKind>({{"plastic", ModulusKind::plastic, "d stress / d plastic strain"},
                               {"tangent", ModulusKind::tangent, "d stress / d strain, < E"}})
@@ -193,35 +204,18 @@ struct TableLaw {
           {one, list(file).items(1, 1000).named("files", "several")},
           [](const std::vector<std::string>& names) { return names.size() == 1 ? 0 : 1; });
     };
-    const auto value = number().named("value", "value");
-    const auto point = mapped<Point>(
-        tuple<5>(value),
-        [](const std::array<double, 5>& v) {
-          return Point{v[0], v[1], v[2], v[3], v[4]};
-        },
-        [](const Point& p) {
-          return std::array{p.strain_1, p.strain_2, p.stress_1, p.stress_2, p.weight};
-        });
-    const auto shear_point = mapped<ShearPoint>(
-        tuple<3>(value),
-        [](const std::array<double, 3>& v) {
-          return ShearPoint{v[0], v[1], v[2]};
-        },
-        [](const ShearPoint& p) {
-          return std::array{p.strain, p.stress, p.weight};
-        });
     const auto of_tests = [](const auto& law) { return !law.data.empty() || !law.shear_data.empty(); };
 
     keys("data", &TableLaw::data, files(), "points of tests: strain_1, strain_2, stress_1, stress_2 and perhaps weight")
         .or_another();
-    keys("points", &TableLaw::points, list(point.named("row", "a point")).items(1, 100000),
+    keys("points", &TableLaw::points, list(row<Point>()).items(1, 100000),
          "such points in place: Green-Lagrange strains, second Piola-Kirchhoff stresses in Pa, weight")
         .or_another();
     if (along_axes) {
       keys("shear_data", &TableLaw::shear_data, files(),
            "points of shear tests: shear_strain (2 E12), shear_stress (S12)")
           .or_another();
-      keys("shear_points", &TableLaw::shear_points, list(shear_point.named("row", "a point")).items(1, 100000),
+      keys("shear_points", &TableLaw::shear_points, list(row<ShearPoint>()).items(1, 100000),
            "such points in place: 2 E12, S12 in Pa, weight")
           .or_another();
       keys.not_both("shear_data", "shear_points");

@@ -168,8 +168,7 @@ struct PathSettings {
     keys("options", &Self::options, group<PathOptions>().otherwise("{}"), "of the solver");
     keys.not_both("duration", "history");
   }
+  static void check(Reader& reader, const At<PathSettings>& path);
 };
-
-void check_history(Reader& reader, const At<PathSettings>& path);
 
 } // namespace pneuma::pipeline::workflow

@@ -43,7 +43,7 @@ void DisplacementControl::check(Reader& reader, const At<DisplacementControl>& c
                                  schema::name(&DisplacementControl::until), reader.written(until)));
 }
 
-void check_history(Reader& reader, const At<PathSettings>& path) {
+void PathSettings::check(Reader& reader, const At<PathSettings>& path) {
   Moment last;
   for (const At<Moment>& moment : items(path[&PathSettings::history])) {
     const bool begins = &moment.value == &path->history.front() && moment->time == 0 && moment->factor == 0;
@@ -61,7 +61,7 @@ void Region::check(Reader& reader, const At<Region>& region) {
 }
 
 void WindSettings::check(Reader& reader, const At<WindSettings>& wind) {
-  check_history(reader, {wind.value, wind.path});
+  PathSettings::check(reader, wind);
   std::set<std::string> seen;
   for (const At<Load>& load : items(wind[&WindSettings::loads])) {
     if (seen.insert(load->name).second) continue;
