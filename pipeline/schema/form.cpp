@@ -19,14 +19,13 @@ namespace {
 // A form of what a function of the reader reads.
 template <class T, class Found, class Write>
 Form<T> scalar_form(Type type, std::optional<Found> (Reader::*read)(const Source&), const Write& write) {
-  return form_of<T>(
-      option_of(type),
-      [read](const Source& source, T& value) {
-        const std::optional<Found> found = (source.reader.*read)(source);
-        if (found) value = static_cast<T>(*found);
-        return found.has_value();
-      },
-      write);
+  return {option_of(type),
+          [read](const Source& source, T& value) {
+            const std::optional<Found> found = (source.reader.*read)(source);
+            if (found) value = static_cast<T>(*found);
+            return found.has_value();
+          },
+          write};
 }
 
 Node number_node(double value) {

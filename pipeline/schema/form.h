@@ -17,57 +17,45 @@
 
 namespace pneuma::pipeline::schema {
 
-// How values of one type, which only its Form knows, are read and written.
-struct Access {
-  std::function<bool(const Source&, void* value)> read;        // false: a problem was reported
-  std::function<std::optional<Node>(const void* value)> write; // none: it is absent
-};
-
 // What may stand for a T: its description, how it is read and checked, and how it is written so that it reads back to
 // the same bits. Declarations read as sentences: quantity("m").positive().otherwise("0.5 m").
 template <class T>
 struct Form {
   Option option;
-  std::shared_ptr<const Access> access;
+  std::function<bool(const Source&, T&)> fill;          // false: a problem was reported
+  std::function<std::optional<Node>(const T&)> node_of; // none: it is absent
 
   bool read(Reader& reader, const Node& node, const std::string& path, T& value) const {
-    return access->read({reader, option, node, path}, &value);
+    return fill({reader, option, node, path}, value);
   }
-  Node write(const T& value) const { return access->write(&value).value(); }
+  Node write(const T& value) const { return node_of(value).value(); }
 
   Form otherwise(const std::string& yaml) const { // the default
     return changed([&](Option& o) { set_default(o, yaml); });
   }
-  Form within(const Range& range) const {
-    return changed([&](Option& o) { o.limits = range; });
-  }
+  Form within(const Range& range) const { return with(&Option::limits, range); }
   Form positive() const { return within({0, std::numeric_limits<double>::infinity(), "positive", false, true}); }
   Form at_least(double min, const std::string& words) const {
     return within({min, std::numeric_limits<double>::infinity(), words});
   }
   Form between(double min, double max, const std::string& words) const { return within({min, max, words}); }
   Form usual(double min, double max, const std::string& words) const { // outside is a warning
-    return changed([&](Option& o) { o.usually = Range{min, max, words}; });
+    return with(&Option::usually, Range{min, max, words});
   }
   // Values of a short form are written in another, at a path from the map around.
-  Form stands_for(const std::string& other) const {
-    return changed([&](Option& o) { o.stands_for = other; });
-  }
-  Form such_as(const std::string& example) const {
-    return changed([&](Option& o) { o.example = example; });
-  }
+  Form stands_for(const std::string& other) const { return with(&Option::stands_for, other); }
+  Form such_as(const std::string& example) const { return with(&Option::example, example); }
   Form items(std::size_t least, std::size_t most) const {
-    return changed([&](Option& o) { o.min_items = least, o.max_items = most; });
+    return with(&Option::min_items, least).with(&Option::max_items, most);
   }
   Form named(const std::string& name, const std::string& text) const {
-    return changed([&](Option& o) { o.name = name, o.text = text; });
+    return with(&Option::name, name).with(&Option::text, text);
   }
   // What is done with a value that was read; false: a problem was reported.
   Form and_then(const std::function<bool(const Source&, T&)>& done) const {
-    const auto read = [access = access, done](const Source& source, void* value) {
-      return access->read(source, value) && done(source, *static_cast<T*>(value));
-    };
-    return {option, std::make_shared<Access>(Access{read, access->write})};
+    return {option,
+            [fill = fill, done](const Source& source, T& value) { return fill(source, value) && done(source, value); },
+            node_of};
   }
   // `fault` says what is wrong with a value by itself: a sentence, or "must ..." about its key; empty: nothing.
   Form judged(const std::function<std::string(const T&)>& fault) const {
@@ -79,8 +67,7 @@ struct Form {
   }
   // A value gives names to things of a kind ("foil"), for others to refer to.
   Form defines(const std::string& kind, const std::function<std::vector<std::string>(const T&)>& names) const {
-    const Form form = changed([&](Option& o) { o.defines = kind; });
-    return form.and_then([kind, names](const Source& source, const T& value) {
+    return with(&Option::defines, kind).and_then([kind, names](const Source& source, const T& value) {
       for (const std::string& name : names(value)) source.reader.define(kind, name, source.node.mark);
       return true;
     });
@@ -93,16 +80,11 @@ private:
     change(copy.option);
     return copy;
   }
+  template <class V, class Value>
+  Form with(V Option::*member, const Value& value) const {
+    return changed([&](Option& o) { o.*member = value; });
+  }
 };
-
-// `read(source, value)` fills a T, `write(value)` gives its node, or none where it is absent.
-template <class T, class Read, class Write>
-Form<T> form_of(Option option, const Read& read, const Write& write) {
-  return {std::move(option),
-          std::make_shared<Access>(Access{
-              [read](const Source& source, void* value) { return read(source, *static_cast<T*>(value)); },
-              [write](const void* value) { return std::optional<Node>(write(*static_cast<const T*>(value))); }})};
-}
 
 Form<double> quantity(const std::string& unit);
 Form<double> number();
@@ -119,21 +101,21 @@ Node list_of(std::vector<Node> items);
 // The same value as another type; where `from` gives a pointer and that is null, the value is absent.
 template <class U, class T, class To, class From>
 Form<U> mapped(const Form<T>& form, const To& to, const From& from) {
-  return form_of<U>(
-      form.option,
-      [access = form.access, to](const Source& source, U& value) {
-        T one{};
-        if (!access->read(source, &one)) return false;
-        value = to(one);
-        return true;
-      },
-      [access = form.access, from](const U& value) {
-        const auto one = from(value);
-        if constexpr (!std::is_pointer_v<decltype(from(value))>)
-          return access->write(&one);
-        else
-          return one != nullptr ? access->write(one) : std::nullopt;
-      });
+  return {form.option,
+          [fill = form.fill, to](const Source& source, U& value) {
+            T one{};
+            if (!fill(source, one)) return false;
+            value = to(one);
+            return true;
+          },
+          [write = form.node_of, from](const U& value) -> std::optional<Node> {
+            const auto one = from(value);
+            if constexpr (std::is_pointer_v<decltype(from(value))>) {
+              return one != nullptr ? write(*one) : std::nullopt;
+            } else {
+              return write(one);
+            }
+          }};
 }
 
 // A value that may be absent.
@@ -144,26 +126,13 @@ Form<std::optional<T>> maybe(const Form<T>& form) {
       [](const std::optional<T>& value) { return value ? &*value : nullptr; });
 }
 
-// A list, table or text that is absent where it is empty.
-template <class T>
-Form<T> unless_empty(const Form<T>& form) {
-  const auto write = [access = form.access](const void* value) {
-    return static_cast<const T*>(value)->empty() ? std::nullopt : access->write(value);
-  };
-  return {form.option, std::make_shared<Access>(Access{form.access->read, write})};
-}
-
-// A struct of which this is the only member.
-template <class S, class V>
-Form<S> wrapped(V S::*member, const Form<V>& form) {
-  return mapped<S>(
-      form,
-      [member](const V& value) {
-        S whole{};
-        whole.*member = value;
-        return whole;
-      },
-      [member](const S& whole) { return whole.*member; });
+// The same value as a part of another: a member, or what `part_of` gives.
+template <class U, class T, class PartOf>
+Form<U> part(const Form<T>& form, const PartOf& part_of) {
+  return {
+      form.option,
+      [fill = form.fill, part_of](const Source& source, U& value) { return fill(source, std::invoke(part_of, value)); },
+      [write = form.node_of, part_of](const U& value) { return write(std::invoke(part_of, value)); }};
 }
 
 template <class T>
@@ -183,39 +152,37 @@ Form<T> choice(const std::vector<Word<T>>& words) {
     (one.value ? allowed.text : allowed.not_yet) = one.text;
     members.push_back(std::move(allowed));
   }
-  return form_of<T>(
-      option_of(Type::choice, std::move(members)),
-      [words](const Source& source, T& value) {
-        const std::optional<std::size_t> found = source.reader.choice(source);
-        if (found) value = *words[*found].value;
-        return found.has_value();
-      },
-      [words](const T& value) {
-        const auto found =
-            std::find_if(words.begin(), words.end(), [&](const Word<T>& one) { return one.value == value; });
-        return scalar(found->name);
-      });
+  return {option_of(Type::choice, std::move(members)),
+          [words](const Source& source, T& value) {
+            const std::optional<std::size_t> found = source.reader.choice(source);
+            if (found) value = *words[*found].value;
+            return found.has_value();
+          },
+          [words](const T& value) {
+            const auto found =
+                std::find_if(words.begin(), words.end(), [&](const Word<T>& one) { return one.value == value; });
+            return scalar(found->name);
+          }};
 }
 
 template <class T>
 Form<std::vector<T>> list(const Form<T>& item) {
-  return form_of<std::vector<T>>(
-      option_of(Type::list, {item.option}),
-      [item](const Source& source, std::vector<T>& value) {
-        bool complete = source.reader.items(source);
-        value.clear();
-        for (std::size_t i = 0; i < source.node.items.size(); ++i) {
-          T& one = value.emplace_back();
-          const std::string path = below(source.path, std::to_string(i));
-          complete = item.read(source.reader, source.node.items[i], path, one) && complete;
-        }
-        return complete;
-      },
-      [item](const std::vector<T>& value) {
-        std::vector<Node> items;
-        for (const T& one : value) items.push_back(item.write(one));
-        return list_of(std::move(items));
-      });
+  return {option_of(Type::list, {item.option}),
+          [item](const Source& source, std::vector<T>& value) {
+            bool complete = source.reader.items(source);
+            value.clear();
+            for (std::size_t i = 0; i < source.node.items.size(); ++i) {
+              T& one = value.emplace_back();
+              const std::string path = below(source.path, std::to_string(i));
+              complete = item.read(source.reader, source.node.items[i], path, one) && complete;
+            }
+            return complete;
+          },
+          [item](const std::vector<T>& value) {
+            std::vector<Node> items;
+            for (const T& one : value) items.push_back(item.write(one));
+            return list_of(std::move(items));
+          }};
 }
 
 // A list of so many.
@@ -247,25 +214,24 @@ Form<V> vector(const Form<double>& component) {
 // A map from names; of a kind that there must be ("foil"), or another word.
 template <class T>
 Form<std::map<std::string, T>> table(const Form<T>& item, const std::string& kind = "", const std::string& other = "") {
-  return form_of<std::map<std::string, T>>(
-      option_of(Type::table, {item.option}),
-      [item, kind, other](const Source& source, std::map<std::string, T>& value) {
-        bool complete = source.reader.entries(source);
-        for (const Entry& entry : source.node.entries) {
-          if (!kind.empty() && entry.key != other) source.reader.refer(kind, entry.key, entry.mark);
-          T one{};
-          const bool good = item.read(source.reader, entry.value, below(source.path, entry.key), one);
-          if (good) value.insert_or_assign(entry.key, std::move(one));
-          complete = good && complete;
-        }
-        return complete;
-      },
-      [item](const std::map<std::string, T>& value) {
-        Node node;
-        node.kind = NodeKind::map;
-        for (const auto& [name, one] : value) add(node, name, item.write(one));
-        return node;
-      });
+  return {option_of(Type::table, {item.option}),
+          [item, kind, other](const Source& source, std::map<std::string, T>& value) {
+            bool complete = source.reader.entries(source);
+            for (const Entry& entry : source.node.entries) {
+              if (!kind.empty() && entry.key != other) source.reader.refer(kind, entry.key, entry.mark);
+              T one{};
+              const bool good = item.read(source.reader, entry.value, below(source.path, entry.key), one);
+              if (good) value.insert_or_assign(entry.key, std::move(one));
+              complete = good && complete;
+            }
+            return complete;
+          },
+          [item](const std::map<std::string, T>& value) {
+            Node node;
+            node.kind = NodeKind::map;
+            for (const auto& [name, one] : value) add(node, name, item.write(one));
+            return node;
+          }};
 }
 
 inline constexpr const char* all = "all"; // key that stands for every one of a kind that is not named
@@ -292,13 +258,12 @@ template <class T>
 Form<T> either(const std::vector<Form<T>>& kinds, const std::function<std::size_t(const T&)>& which) {
   std::vector<Option> members;
   for (const Form<T>& kind : kinds) members.push_back(kind.option);
-  return form_of<T>(
-      option_of(Type::either, std::move(members)),
-      [kinds](const Source& source, T& value) {
-        const std::optional<std::size_t> found = source.reader.either(source);
-        return found && kinds[*found].read(source.reader, source.node, source.path, value);
-      },
-      [kinds, which](const T& value) { return kinds[which(value)].write(value); });
+  return {option_of(Type::either, std::move(members)),
+          [kinds](const Source& source, T& value) {
+            const std::optional<std::size_t> found = source.reader.either(source);
+            return found && kinds[*found].read(source.reader, source.node, source.path, value);
+          },
+          [kinds, which](const T& value) { return kinds[which(value)].write(value); }};
 }
 
 // A word that stands for no value, or one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <any>
 #include <stdexcept>
 
 #include "pipeline/schema/form.h"
@@ -45,49 +46,13 @@ std::string name(V B::*member) {
   return quoted(keys_of<B>().name_of(member));
 }
 
-// One key of a map: its description and what it fills.
+// One key of a map that a T stands for.
+template <class T>
 struct Key {
-  Option option;
-  std::shared_ptr<const Access> access;             // none: not available yet
-  std::function<void*(void* owner)> target;         // what is read into: a member of the owner, or the owner
-  bool is_member = false;                           // the former
-  std::function<bool(const void* owner)> condition; // empty: the key always means something
-  std::string otherwise;                            // why it is refused where it means nothing; empty: passed over
-};
-
-// The keys of a map as data: what Keys<T> (below) declares for a T, of which this knows nothing.
-class AnyKeys {
-public:
-  using Rule = std::function<void(Reader&, const void* owner, const std::string& path)>;
-  using Part = std::function<void*(void* outer)>;
-
-  std::vector<Key> list;
-  std::vector<Rule> rules;
-
-  // What the map is called where it is one of several, and what it means; `told_by`: the key that tells it from
-  // another of the same name.
-  void is(const std::string& name, const std::string& text, const std::string& told_by = "");
-  // A key that the format knows and the program does not offer yet.
-  void unavailable(const std::string& name, const std::string& instead);
-  void exactly_one(const std::vector<std::string>& keys) { sets_.push_back({keys, 1, 1}); }
-  void at_least_one(const std::vector<std::string>& keys) { sets_.push_back({keys, 1, keys.size()}); }
-  void not_both(const std::string& first, const std::string& second) { sets_.push_back({{first, second}, 0, 1}); }
-  // The keys and rules of a part of the owner, and what they are called.
-  void include(const AnyKeys& keys, const Part& part);
-  // Of maps of which one is chosen: makes the owner one that is written with these keys; whether it is.
-  std::function<void(void* owner)> begin;
-  std::function<bool(const void* owner)> is_written;
-
-  const std::string& called() const { return named_.name; }
-  Option option() const;
-  bool read(const Source& source, void* owner) const;
-  Node write(const void* owner, Node node = {}) const;
-
-private:
-  bool judge(Reader& reader, const void* owner, const std::string& path) const;
-
-  Option named_ = option_of(Type::group);
-  std::vector<KeySet> sets_;
+  Form<T> form;                                 // what it fills in the T
+  std::any member = {};                         // if that is one: pointer to it
+  std::function<bool(const T&)> condition = {}; // empty: the key always means something
+  std::string otherwise = {};                   // why it is refused where it means nothing; empty: passed over
 };
 
 // The keys of a map that a T stands for: each with its form, its text and the member that it fills. A T declares them
@@ -95,70 +60,156 @@ private:
 // At<T>)`, which sees complete values only. A member must be given unless it is a std::optional or its form has a
 // default.
 template <class T>
-class Keys : public AnyKeys {
+class Keys {
 public:
+  std::vector<Key<T>> list;
+  std::vector<std::function<void(Reader&, const At<T>&)>> rules;
+  // Of maps of which one is chosen: makes a T one that is written with these keys; whether it is.
+  std::function<void(T&)> begin;
+  std::function<bool(const T&)> is_written;
+
+  // What the map is called where it is one of several, and what it means; `told_by`: the key that tells it from
+  // another of the same name.
+  void is(const std::string& name, const std::string& text, const std::string& told_by = "") {
+    named_.name = name, named_.text = text, named_.told_by = told_by;
+  }
+  void exactly_one(const std::vector<std::string>& keys) { named_.alternatives.push_back({keys, 1, 1}); }
+  void at_least_one(const std::vector<std::string>& keys) { named_.alternatives.push_back({keys, 1, keys.size()}); }
+  void not_both(const std::string& first, const std::string& second) {
+    named_.alternatives.push_back({{first, second}, 0, 1});
+  }
+  // A key that the format knows and the program does not offer yet.
+  void unavailable(const std::string& name, const std::string& instead) {
+    list.push_back({{not_available(name, instead), {}, {}}});
+  }
+
   // What may be said of a key behind its declaration.
   struct Declared {
-    Key& key;
+    Key<T>& key;
 
     // Where the condition is not met the key is not written, and refused where a user gave it: "`creep` <why>".
     Declared where(const std::function<bool(const T&)>& holds, const std::string& why) {
-      key.condition = [holds](const void* owner) { return holds(*static_cast<const T*>(owner)); };
+      key.condition = holds;
       key.otherwise = why;
       return *this;
     }
     Declared or_another() { // one of several, or one that is filled in
-      key.option.is_required = false;
+      key.form.option.is_required = false;
       return *this;
     }
   };
 
   template <class B, class V>
-  Declared operator()(const std::string& name, V B::*member, const Form<V>& form, const std::string& text) {
-    Key key{form.named(name, text).option, form.access, {}, true, {}, ""};
-    key.option.is_required = key.option.default_value.empty();
-    if constexpr (requires(const V& value) { value.empty(); }) {
-      if (key.option.is_required) key.access = unless_empty(form).access;
+  Declared operator()(const std::string& name, V B::*member, Form<V> form, const std::string& text) {
+    form.option.is_required = form.option.default_value.empty();
+    if constexpr (requires(const V& value) { value.empty(); }) { // then it is absent
+      if (form.option.is_required) {
+        form.node_of = [write = form.node_of](const V& value) { return value.empty() ? std::nullopt : write(value); };
+      }
     }
-    key.target = [member](void* owner) -> void* { return &(static_cast<T*>(owner)->*member); };
-    return {list.emplace_back(std::move(key))};
+    const Declared declared = (*this)(name, part<T>(form, member), text);
+    if (form.option.stands_for.empty()) declared.key.member = member;
+    return declared;
   }
   template <class B, class V>
   Declared operator()(const std::string& name, std::optional<V> B::*member, const Form<V>& form,
                       const std::string& text) {
     return (*this)(name, member, maybe(form), text).or_another();
   }
-  // A key that fills the whole owner.
+  // A key that fills the T itself.
   Declared operator()(const std::string& name, const Form<T>& form, const std::string& text) {
-    const auto whole = [](void* owner) { return owner; };
-    return {list.emplace_back(Key{form.named(name, text).option, form.access, whole, false, {}, ""})};
+    return {list.emplace_back(Key<T>{form.named(name, text)})};
   }
 
-  // Also the keys of an A: `variant_of` an owner, or a member of it, is a std::variant.
+  void rule(const std::function<void(Reader&, const At<T>&)>& check) { rules.push_back(check); }
+  // Also the keys and rules of a part of the T, and what they are called.
+  template <class A, class PartOf>
+  void include(const Keys<A>& keys, const PartOf& part_of) {
+    for (const Key<A>& key : keys.list) {
+      Key<T>& own = list.emplace_back(Key<T>{part<T>(key.form, part_of), {}, {}, key.otherwise});
+      if (key.condition) own.condition = [is = key.condition, part_of](const T& owner) { return is(part_of(owner)); };
+    }
+    for (const auto& one : keys.rules) {
+      rule([one, part_of](Reader& reader, const At<T>& owner) { one(reader, {part_of(owner.value), owner.path}); });
+    }
+    const std::vector<KeySet>& sets = keys.named_.alternatives;
+    named_.alternatives.insert(named_.alternatives.end(), sets.begin(), sets.end());
+    if (!keys.named_.name.empty()) is(keys.named_.name, keys.named_.text, keys.named_.told_by);
+  }
+  // Also the keys of an A: `variant_of` a T, or a member of it, is a std::variant.
   template <class A, class VariantOf>
   void alternative(const Keys<A>& keys, const VariantOf& variant_of) {
-    const auto held = [variant_of](void* owner) -> auto& {
-      return std::invoke(variant_of, *static_cast<T*>(owner));
-    };
-    include(keys, [held](void* owner) -> void* { return &std::get<A>(held(owner)); });
-    begin = [held](void* owner) { held(owner) = A{}; };
-    is_written = [held](const void* owner) { return std::holds_alternative<A>(held(const_cast<void*>(owner))); };
+    include(
+        keys, [variant_of](auto& owner) -> auto& { return std::get<A>(std::invoke(variant_of, owner)); });
+    begin = [variant_of](T& owner) { std::invoke(variant_of, owner) = A{}; };
+    is_written = [variant_of](const T& owner) { return std::holds_alternative<A>(std::invoke(variant_of, owner)); };
   }
 
-  void rule(const std::function<void(Reader&, const At<T>&)>& check) {
-    rules.push_back([check](Reader& reader, const void* owner, const std::string& path) {
-      check(reader, {*static_cast<const T*>(owner), path});
-    });
+  const std::string& called() const { return named_.name; }
+  Option option() const {
+    std::vector<Option> members;
+    for (const Key<T>& key : list) members.push_back(key.form.option);
+    Option out = named_;
+    out.parts = std::make_shared<const std::vector<Option>>(std::move(members));
+    return out;
   }
   template <class B, class V>
   std::string name_of(V B::*member) const {
-    static T probe{};
-    for (const Key& key : list) {
-      if (key.is_member && key.option.stands_for.empty() && key.target(&probe) == static_cast<void*>(&(probe.*member)))
-        return key.option.name;
+    for (const Key<T>& key : list) {
+      const auto* own = std::any_cast<V B::*>(&key.member);
+      if (own != nullptr && *own == member) return key.form.option.name;
     }
     throw std::logic_error("a member without a key");
   }
+
+  bool read(const Source& source, T& owner) const {
+    Reader& reader = source.reader;
+    bool complete = reader.keys(source);
+    for (const Key<T>& key : list) {
+      const Option& option = key.form.option;
+      if (!option.not_yet.empty()) continue;
+      const std::string path = below(source.path, option.name);
+      const Node* given = find(source.node, option.name);
+      const bool good = given != nullptr && key.form.read(reader, *given, path, owner);
+      if (!good && !option.defines.empty()) reader.cannot_know(option.defines);
+      if (good && !option.stands_for.empty()) reader.came_from(below(source.path, option.stands_for), path);
+      if (given != nullptr && !good) {
+        reader.spoil(path);
+        complete = false;
+      } else if (given == nullptr && option.default_node && option.tag.empty()) {
+        Reader apart; // a default has no place in the file
+        key.form.read(apart, *option.default_node, path, owner);
+      }
+    }
+    return complete && judge(reader, {owner, source.path});
+  }
+  Node write(const T& owner, Node node = {}) const {
+    node.kind = NodeKind::map;
+    for (const Key<T>& key : list) {
+      if (!key.form.option.not_yet.empty() || (key.condition && !key.condition(owner))) continue;
+      std::optional<Node> one = key.form.node_of(owner);
+      if (one) add(node, key.form.option.name, std::move(*one));
+    }
+    return node;
+  }
+
+private:
+  template <class A>
+  friend class Keys;
+
+  bool judge(Reader& reader, const At<T>& owner) const {
+    const auto before = static_cast<std::ptrdiff_t>(reader.problems.size());
+    for (const Key<T>& key : list) {
+      const std::string path = below(owner.path, key.form.option.name);
+      const bool matters = key.condition && !key.otherwise.empty() && reader.given(path);
+      if (matters && !key.condition(owner.value)) reader.refuse(path, key.otherwise);
+    }
+    for (const auto& one : rules) one(reader, owner);
+    return std::none_of(reader.problems.begin() + before, reader.problems.end(),
+                        [](const Problem& problem) { return problem.error; });
+  }
+
+  Option named_ = option_of(Type::group); // without its keys
 };
 
 // Where the keys of a T are declared; there are overloads for types of other folders.
@@ -182,9 +233,8 @@ const Keys<T>& keys_of() {
 template <class T>
 Form<T> group(const Keys<T>& keys) {
   const auto shared = std::make_shared<const Keys<T>>(keys);
-  return form_of<T>(
-      keys.option(), [shared](const Source& source, T& value) { return shared->read(source, &value); },
-      [shared](const T& value) { return shared->write(&value); });
+  return {keys.option(), [shared](const Source& source, T& value) { return shared->read(source, value); },
+          [shared](const T& value) { return shared->write(value); }};
 }
 
 template <class T>
@@ -200,22 +250,21 @@ Form<T> tagged(const std::string& tag, const std::vector<Keys<T>>& maps, std::ve
   std::move(unavailable.begin(), unavailable.end(), std::back_inserter(members));
   Option option = option_of(Type::variant, std::move(members));
   option.tag = tag;
-  return form_of<T>(
-      std::move(option),
-      [maps](const Source& source, T& value) {
-        const std::optional<std::size_t> found = source.reader.alternative(source);
-        if (!found) return false;
-        maps[*found].begin(&value);
-        const Option& group = source.option.members()[*found];
-        return maps[*found].read({source.reader, group, source.node, source.path, &source.option}, &value);
-      },
-      [maps, tag](const T& value) {
-        const auto found =
-            std::find_if(maps.begin(), maps.end(), [&](const Keys<T>& one) { return one.is_written(&value); });
-        Node node;
-        add(node, tag, scalar(found->called()));
-        return found->write(&value, std::move(node));
-      });
+  return {std::move(option),
+          [maps](const Source& source, T& value) {
+            const std::optional<std::size_t> found = source.reader.alternative(source);
+            if (!found) return false;
+            maps[*found].begin(value);
+            const Option& group = source.option.members()[*found];
+            return maps[*found].read({source.reader, group, source.node, source.path, &source.option}, value);
+          },
+          [maps, tag](const T& value) {
+            const auto found =
+                std::find_if(maps.begin(), maps.end(), [&](const Keys<T>& one) { return one.is_written(value); });
+            Node node;
+            add(node, tag, scalar(found->called()));
+            return found->write(value, std::move(node));
+          }};
 }
 
 template <class... Ts>

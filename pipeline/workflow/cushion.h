@@ -16,7 +16,8 @@ struct Site {
 
   static void declare(auto& keys) {
     const auto pressure = quantity("Pa").at_least(0, "at least 0 Pa").such_as("101325 Pa").otherwise("101325 Pa");
-    keys("ambient_pressure", &Site::ambient_pressure, wrapped(&base::AbsolutePressure::pascal, pressure),
+    keys("ambient_pressure", &Site::ambient_pressure,
+         part<base::AbsolutePressure>(pressure, &base::AbsolutePressure::pascal),
          "absolute pressure of the still air around; 0 Pa gives the thesis' gas law");
     keys("temperature", &Site::temperature,
          quantity("K").positive().usual(213.15, 353.15, "usually -60 to 80 degC").otherwise("23 degC"),

@@ -27,7 +27,7 @@ struct FormfindSettings {
     using Self = FormfindSettings;
     const char* isotropic = "an isotropic prestress (or stress) per foil is available: {all: 0.89 kN/m}";
     keys("gauge_pressure", &Self::gauge_pressure, gauge_pressures(), "the pressure of the form");
-    const Form<double> warp_weft{schema::not_available("{warp: ..., weft: ...}", isotropic), {}};
+    const Form<double> warp_weft{schema::not_available("{warp: ..., weft: ...}", isotropic), {}, {}};
     keys("prestress", &Self::prestress,
          each("foil",
               either<double>({isotropic_prestress(), warp_weft}, [](double) { return 0; })

@@ -23,6 +23,7 @@ using schema::list;
 using schema::mapped;
 using schema::name_of_a;
 using schema::number;
+using schema::part;
 using schema::quantity;
 using schema::Reader;
 using schema::reference_to;
@@ -31,7 +32,6 @@ using schema::text;
 using schema::tuple;
 using schema::word;
 using schema::word_or;
-using schema::wrapped;
 
 inline Form<double> length() {
   return quantity("m").positive().usual(0.01, 100, "usually 1 cm to 100 m").such_as("6 m");

@@ -36,8 +36,9 @@ void add_temperatures(Keys<Material>& keys) {
   } else {
     varying.list = schema::keys_of<L>().list;
   }
-  for (schema::Key& key : varying.list) key.option.is_required = false;
-  entry.include(varying, [](void* one) -> void* { return &std::get<L>(static_cast<Entry*>(one)->law); });
+  for (schema::Key<L>& key : varying.list) key.form.option.is_required = false;
+  entry.include(
+      varying, [](auto& one) -> auto& { return std::get<L>(one.law); });
   const Form<Entry> item =
       group(entry).named("temperature", "what the law has there; the rest is as in the law itself");
   const auto read = [item](const schema::Source& source, Material& material) {
@@ -63,7 +64,7 @@ void add_temperatures(Keys<Material>& keys) {
   const auto write = [all](const Material& material) {
     return material.other.empty() ? std::optional<yaml::Node>() : all.write(material.other);
   };
-  keys("temperature", schema::form_of<Material>(all.option, read, write),
+  keys("temperature", Form<Material>{all.option, read, write},
        "the law at other temperatures; linear between neighbours, an error outside");
 }
 
@@ -78,13 +79,9 @@ Keys<Material> material_of(const Keys<L>& law, bool has_temperatures = false) {
         .where([](const Material& material) { return !material.other.empty(); }, "");
     add_temperatures<L>(keys);
   }
-  keys.include(schema::keys_of<Material>(), [](void* material) { return material; });
+  keys.include(schema::keys_of<Material>(), std::identity());
   keys.rule(check_branches);
   return keys;
-}
-
-TableLaw* table_in(void* material) {
-  return std::get_if<TableLaw>(&static_cast<Material*>(material)->law);
 }
 
 Keys<Material> material_of_table(TableLaw::Kind kind) {
@@ -92,12 +89,9 @@ Keys<Material> material_of_table(TableLaw::Kind kind) {
   TableLaw::declare(law, kind);
   law.rule(TableLaw::check);
   Keys<Material> keys = material_of(law);
-  keys.begin = [begin = keys.begin, kind](void* material) {
-    begin(material);
-    table_in(material)->kind = kind;
-  };
-  keys.is_written = [kind](const void* material) {
-    const TableLaw* table = table_in(const_cast<void*>(material));
+  keys.begin = [kind](Material& material) { material.law.emplace<TableLaw>().kind = kind; };
+  keys.is_written = [kind](const Material& material) {
+    const auto* table = std::get_if<TableLaw>(&material.law);
     return table != nullptr && table->kind == kind;
   };
   return keys;

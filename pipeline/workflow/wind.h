@@ -92,10 +92,11 @@ struct Load {
     using Kind = decltype(kind);
     const auto wind = quantity("Pa").usual(-10000, 10000, "usually up to 10 kPa");
     const auto snow = quantity("Pa").at_least(0, "at least 0 Pa").usual(0, 20000, "usually up to 20 kPa");
-    keys("wind", &Load::kind, schema::as<Kind>(wrapped(&WindLoad::pressure, wind)),
+    keys("wind", &Load::kind, schema::as<Kind>(part<WindLoad>(wind, &WindLoad::pressure)),
          "positive pushes against the face, negative is suction; follows the foil")
         .or_another();
-    keys("snow", &Load::kind, schema::as<Kind>(wrapped(&SnowLoad::weight, snow)), "weight per plan area, straight down")
+    keys("snow", &Load::kind, schema::as<Kind>(part<SnowLoad>(snow, &SnowLoad::weight)),
+         "weight per plan area, straight down")
         .or_another();
     keys("patch", &Load::kind, schema::as<Kind>(group<PatchLoad>()), "a dead force spread over a rectangle in plan")
         .or_another();
