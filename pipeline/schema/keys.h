@@ -53,6 +53,17 @@ struct Key {
   std::any member = {};                         // if that is one: pointer to it
   std::function<bool(const T&)> condition = {}; // empty: the key always means something
   std::string otherwise = {};                   // why it is refused where it means nothing; empty: passed over
+
+  // Where the condition is not met the key is not written, and refused where a user gave it: "`creep` <why>".
+  Key& where(const std::function<bool(const T&)>& holds, const std::string& why) {
+    condition = holds;
+    otherwise = why;
+    return *this;
+  }
+  Key& or_another() { // one of several, or one that is filled in
+    form.option.is_required = false;
+    return *this;
+  }
 };
 
 // The keys of a map that a T stands for: each with its form, its text and the member that it fills. A T declares them
@@ -83,42 +94,26 @@ public:
     list.push_back({{not_available(name, instead), {}, {}}});
   }
 
-  // What may be said of a key behind its declaration.
-  struct Declared {
-    Key<T>& key;
-
-    // Where the condition is not met the key is not written, and refused where a user gave it: "`creep` <why>".
-    Declared where(const std::function<bool(const T&)>& holds, const std::string& why) {
-      key.condition = holds;
-      key.otherwise = why;
-      return *this;
-    }
-    Declared or_another() { // one of several, or one that is filled in
-      key.form.option.is_required = false;
-      return *this;
-    }
-  };
-
   template <class B, class V>
-  Declared operator()(const std::string& name, V B::*member, Form<V> form, const std::string& text) {
+  Key<T>& operator()(const std::string& name, V B::*member, Form<V> form, const std::string& text) {
     form.option.is_required = form.option.default_value.empty();
     if constexpr (requires(const V& value) { value.empty(); }) { // then it is absent
       if (form.option.is_required) {
         form.node_of = [write = form.node_of](const V& value) { return value.empty() ? std::nullopt : write(value); };
       }
     }
-    const Declared declared = (*this)(name, part<T>(form, member), text);
-    if (form.option.stands_for.empty()) declared.key.member = member;
-    return declared;
+    Key<T>& key = (*this)(name, part<T>(form, member), text);
+    if (form.option.stands_for.empty()) key.member = member;
+    return key;
   }
   template <class B, class V>
-  Declared operator()(const std::string& name, std::optional<V> B::*member, const Form<V>& form,
-                      const std::string& text) {
+  Key<T>& operator()(const std::string& name, std::optional<V> B::*member, const Form<V>& form,
+                     const std::string& text) {
     return (*this)(name, member, maybe(form), text).or_another();
   }
   // A key that fills the T itself.
-  Declared operator()(const std::string& name, const Form<T>& form, const std::string& text) {
-    return {list.emplace_back(Key<T>{form.named(name, text)})};
+  Key<T>& operator()(const std::string& name, const Form<T>& form, const std::string& text) {
+    return list.emplace_back(Key<T>{form.named(name, text)});
   }
 
   void rule(const std::function<void(Reader&, const At<T>&)>& check) { rules.push_back(check); }

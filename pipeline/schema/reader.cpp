@@ -89,9 +89,9 @@ std::string Reader::title(const std::string& path) const {
 
 std::optional<Mark> Reader::origin(const std::string& path) const {
   for (std::string at = path;; at = around(at)) {
-    if (const auto found = marks_.find(at); found != marks_.end()) return found->second;
     if (const auto found = sources_.find(at); found != sources_.end()) {
-      return origin(found->second + path.substr(at.size()));
+      const auto* other = std::get_if<std::string>(&found->second);
+      return other != nullptr ? origin(*other + path.substr(at.size())) : std::get<Mark>(found->second);
     }
     if (const auto found = places_.find(at); found != places_.end()) {
       const bool is_value = found->second.node->kind == NodeKind::scalar;
@@ -266,22 +266,15 @@ bool Reader::entries(const Source& table) {
 std::optional<std::size_t> Reader::either(const Source& source) {
   const std::vector<Option>& kinds = source.option.members();
   const Node& node = source.node;
-  const auto scalars =
-      std::count_if(kinds.begin(), kinds.end(), [](const Option& kind) { return kind_of(kind) == NodeKind::scalar; });
+  const bool is_number = node.text.find_first_of("+-.0123456789") == 0;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (kind_of(kinds[i]) != node.kind) continue;
+    if (kind_of(kinds[i]) != node.kind || (!words.empty() && !is_number)) continue;
     if (!kinds[i].not_yet.empty()) {
       return not_yet(node.mark, fmt::format("{} as {}", title(source.path), written_as(node)), kinds[i].not_yet);
     }
-    if (kinds[i].type == Type::choice) {
-      words = names_of(kinds[i].members());
-      if (!is_among(node.text, words)) {
-        if (scalars > 1 && node.text.find_first_of("+-.0123456789") == 0) continue;
-        break;
-      }
-    }
-    return i;
+    if (kinds[i].type == Type::choice) words = names_of(kinds[i].members());
+    if (kinds[i].type != Type::choice || is_among(node.text, words)) return i;
   }
   return misfit(source, expected(source.option), suggestion(node.text, words));
 }

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <variant>
 #include <vector>
 
 #include "pipeline/schema/option.h"
@@ -58,8 +59,7 @@ public:
   bool is_whole(const std::string& path) const { return !spoiled_.contains(path); }
 
   // Where the values of a path came from, if not from what is written there: from another path, or a place elsewhere.
-  void came_from(const std::string& path, std::string other) { sources_[path] = std::move(other); }
-  void came_from(const std::string& path, Mark mark) { marks_[path] = std::move(mark); }
+  void came_from(const std::string& path, std::variant<std::string, Mark> other) { sources_[path] = std::move(other); }
   std::optional<Mark> origin(const std::string& path) const; // none: a default
 
   // Names of a kind ("foil") that a file defines, in its order, and where it uses them.
@@ -118,8 +118,7 @@ private:
   std::deque<Node> trees_;
   std::unordered_map<std::string, Place> places_;
   std::set<std::string> spoiled_;
-  std::map<std::string, std::string> sources_;
-  std::map<std::string, Mark> marks_;
+  std::map<std::string, std::variant<std::string, Mark>> sources_;
   std::map<std::string, Names> names_;
   std::vector<Use> uses_;
 };

@@ -59,8 +59,8 @@ void File::declare(schema::Keys<File>& keys, bool is_stage_file) {
     keys("site", &File::site, group<Site>().otherwise("{}"), "where the cushion is");
   }
   keys("cushion", &File::cushion, group<Cushion>(), "what is built");
-  auto mesh = keys("mesh", &File::mesh, group<MeshSettings>(), "the mesh all foils get");
-  mesh.key.form.option.is_required = !is_stage_file;
+  auto& mesh = keys("mesh", &File::mesh, group<MeshSettings>(), "the mesh all foils get");
+  mesh.form.option.is_required = !is_stage_file;
   const auto stages_by_id = table(stage_form(is_stage_file).named("ID", "a stage"));
   keys("stages", &File::stages, is_stage_file ? stages_by_id : stages_by_id.otherwise("{}"), "the stages by their IDs")
       .or_another();
