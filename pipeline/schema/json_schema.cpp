@@ -97,14 +97,10 @@ Json body_of(const Option& option) {
   case Type::variant: {
     Json kinds = Json::array();
     for (const Option& kind : option.members()) {
-      if (option.type == Type::either) {
-        kinds.push_back(schema_of(kind));
-      } else {
-        Json one = group_of(kind, option.tag);
-        if (!kind.not_yet.empty()) one = {{"description", refusal(kind)}, {"not", Json::object()}};
-        if (option.default_value != kind.name) one["required"].push_back(option.tag);
-        kinds.push_back(std::move(one));
-      }
+      const bool is_group = option.type == Type::variant && kind.not_yet.empty();
+      Json one = is_group ? group_of(kind, option.tag) : schema_of(kind);
+      if (option.type == Type::variant && option.default_value != kind.name) one["required"].push_back(option.tag);
+      kinds.push_back(std::move(one));
     }
     return {{"anyOf", std::move(kinds)}};
   }

@@ -30,26 +30,24 @@ Unit own(ut_unit* unit) {
 }
 
 struct Dimension {
-  const char* unit;
-  const char* name;
-  const char* example;
+  std::string unit, name, example;
 };
 
-const Dimension* dimension_in(const std::string& unit) {
-  static constexpr std::array<Dimension, 11> known = {{{"m", "a length", "250 um` or `6 m"},
-                                                       {"m3", "a volume", "0.5 m3"},
-                                                       {"Pa", "a pressure or stress", "400 Pa"},
-                                                       {"N/m", "a force per length", "0.89 kN/m"},
-                                                       {"K", "a temperature", "23 degC"},
-                                                       {"rad", "an angle", "30 deg"},
-                                                       {"s", "a time", "5 s"},
-                                                       {"N", "a force", "1 kN"},
-                                                       {"kg/m3", "a density", "1750 kg/m3"},
-                                                       {"K-1", "a thermal expansion", "9e-5 K-1"},
-                                                       {"1", "a ratio", "0.3 %"}}};
+Dimension dimension_in(const std::string& unit) {
+  static const std::array<Dimension, 11> known = {{{"m", "a length", "250 um` or `6 m"},
+                                                   {"m3", "a volume", "0.5 m3"},
+                                                   {"Pa", "a pressure or stress", "400 Pa"},
+                                                   {"N/m", "a force per length", "0.89 kN/m"},
+                                                   {"K", "a temperature", "23 degC"},
+                                                   {"rad", "an angle", "30 deg"},
+                                                   {"s", "a time", "5 s"},
+                                                   {"N", "a force", "1 kN"},
+                                                   {"kg/m3", "a density", "1750 kg/m3"},
+                                                   {"K-1", "a thermal expansion", "9e-5 K-1"},
+                                                   {"1", "a ratio", "0.3 %"}}};
   const auto* const found =
       std::find_if(known.begin(), known.end(), [&](const Dimension& d) { return unit == d.unit; });
-  return found == known.end() ? nullptr : found;
+  return found != known.end() ? *found : Dimension{unit, "a quantity in " + unit, "1 " + unit};
 }
 
 // The database of units, read once, and what it lacks; columns of water are the conventional ones (1000 kg/m3, 9.80665
@@ -383,26 +381,23 @@ std::string meant(const std::string& text, const std::string& unit, const ut_uni
 } // namespace
 
 std::string dimension_of(const std::string& unit) {
-  const Dimension* const known = dimension_in(unit);
-  return known == nullptr ? "a quantity in " + unit : known->name;
+  return dimension_in(unit).name;
 }
 
 Quantity parse_quantity(std::string_view text, const std::string& unit, const std::string& example) {
-  const Dimension* const known = dimension_in(unit);
-  const std::string any = known == nullptr ? "1 " + unit : known->example;
-  const std::string such_as =
-      fmt::format("expected {} such as `{}`", dimension_of(unit), example.empty() ? any : example);
-  const auto wrong = [&](const std::string& what, const std::string& instead) {
+  const auto wrong = [&](const std::string& what, const std::string& guess = "") {
+    const Dimension dimension = dimension_in(unit);
+    const std::string instead = guess.empty() ? fmt::format("expected {} such as `{}`", dimension.name,
+                                                            example.empty() ? dimension.example : example)
+                                              : fmt::format("did you mean {}?", guess);
     return Quantity{0, fmt::format("{} {}; {}", as_written(text), what, instead)};
   };
-  if (text.size() > longest) return wrong(fmt::format("is longer than {} characters", longest), such_as);
+  if (text.size() > longest) return wrong(fmt::format("is longer than {} characters", longest));
   const std::string plain = typed(text);
-  if (std::any_of(plain.begin(), plain.end(), is_control)) return wrong("holds a control character", such_as);
+  if (std::any_of(plain.begin(), plain.end(), is_control)) return wrong("holds a control character");
   const Unit target = parse_unit(unit);
   const Quantity result = read(plain, target.get());
-  if (result.error.empty()) return {result.value, {}};
-  const std::string guess = meant(plain, unit, target.get());
-  return wrong(result.error, guess.empty() ? such_as : fmt::format("did you mean {}?", guess));
+  return result.error.empty() ? result : wrong(result.error, meant(plain, unit, target.get()));
 }
 
 std::string shown(double value, const std::string& unit) {
