@@ -246,8 +246,8 @@ Form<std::map<std::string, T>> each(const std::string& kind, const Form<T>& item
     const auto of_all = reader.knows(kind) ? value.extract(all) : typename std::map<std::string, T>::node_type();
     if (of_all.empty()) return true;
     for (const std::string& name : reader.names(kind)) {
-      if (value.emplace(name, of_all.mapped()).second)
-        reader.came_from(below(source.path, name), below(source.path, all));
+      if (!value.emplace(name, of_all.mapped()).second) continue;
+      reader.came_from(below(source.path, name), below(source.path, all));
     }
     return true;
   });

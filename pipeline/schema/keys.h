@@ -67,9 +67,8 @@ struct Key {
 };
 
 // The keys of a map that a T stands for: each with its form, its text and the member that it fills. A T declares them
-// in `static void declare(auto& keys)`; rules between them stand in `static void check(Reader&,
-// At<T>)`, which sees complete values only. A member must be given unless it is a std::optional or its form has a
-// default.
+// in `static void declare(auto& keys)`; rules between them stand in `static void check(Reader&, At<T>)`, which sees
+// complete values only. A member must be given unless it is a std::optional or its form has a default.
 template <class T>
 class Keys {
 public:
@@ -97,7 +96,7 @@ public:
   template <class B, class V>
   Key<T>& operator()(const std::string& name, V B::*member, Form<V> form, const std::string& text) {
     form.option.is_required = form.option.default_value.empty();
-    if constexpr (requires(const V& value) { value.empty(); }) { // then it is absent
+    if constexpr (requires(const V& value) { value.empty(); }) { // an empty one is absent
       if (form.option.is_required) {
         form.node_of = [write = form.node_of](const V& value) { return value.empty() ? std::nullopt : write(value); };
       }
