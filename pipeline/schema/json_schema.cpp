@@ -40,8 +40,9 @@ Json group_of(const Option& option, const std::string& tag) {
     if (set.least == 0) {
       words["not"]["required"] = set.keys;
     } else {
-      words[set.most == 1 ? "oneOf" : "anyOf"] = std::move(one);
+      words[set.most == 1 && set.beside.empty() ? "oneOf" : "anyOf"] = std::move(one);
     }
+    if (!set.beside.empty()) words["anyOf"].push_back({{"not", {{"required", {set.beside}}}}});
     json["allOf"].push_back(std::move(words));
   }
   return json;

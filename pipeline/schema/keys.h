@@ -88,6 +88,10 @@ public:
   void not_both(const std::string& first, const std::string& second) {
     named_.alternatives.push_back({{first, second}, 0, 1});
   }
+  // One of them at least must stand beside a key.
+  void needs(const std::string& key, const std::vector<std::string>& others, const std::string& why) {
+    named_.alternatives.push_back({others, 1, others.size(), key, why});
+  }
   // A key that the format knows and the program does not offer yet.
   void unavailable(const std::string& name, const std::string& instead) {
     list.push_back({{not_available(name, instead), {}, {}}});

@@ -100,6 +100,7 @@ std::string expected(const Option& option) {
 }
 
 std::string wanted(const KeySet& set) {
+  if (!set.beside.empty()) return fmt::format("`{}` beside `{}`", fmt::join(set.keys, "` or `"), set.beside);
   const char* count = set.least == 0 ? "at most one" : set.most == 1 ? "exactly one" : "at least one";
   return fmt::format("{} of: {}", count, joined(set.keys));
 }

@@ -51,6 +51,7 @@ struct Range {
 struct KeySet {
   std::vector<std::string> keys;
   std::size_t least = 1, most = 1;
+  std::string beside = {}, why = {}; // not empty: only where this key is given, and why
 };
 
 // What a user may write at one place: plain data, from which reading, messages, the reference and the JSON schema come.

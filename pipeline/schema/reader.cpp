@@ -329,9 +329,11 @@ bool Reader::has_all(const Source& group, const std::set<std::string>& meant) {
   }
   for (const KeySet& set : option.alternatives) {
     const auto present = static_cast<std::size_t>(std::count_if(set.keys.begin(), set.keys.end(), is_present));
-    if (present >= set.least && present <= set.most) continue;
-    fail(node.mark, fmt::format("{} needs {}; it has {}", title(path), wanted(set),
-                                present == 0 ? "none" : fmt::format("{}", present)));
+    if ((present >= set.least && present <= set.most) || (!set.beside.empty() && !is_present(set.beside))) continue;
+    fail(node.mark, fmt::format("{} needs {}{}", title(path), wanted(set),
+                                !set.why.empty() ? ": " + set.why
+                                : present == 0   ? "; it has none"
+                                                 : fmt::format("; it has {}", present)));
     complete = false;
   }
   return complete;

@@ -128,20 +128,11 @@ void TableLaw::check(Reader& reader, const At<TableLaw>& law) {
     reader.fail(range_at, fmt::format("{} must hold the strain 0, from which the foil starts, and end above it: [{}, "
                                       "{}] does not",
                                       schema::name(&TableLaw::range), (*law->range)[0], (*law->range)[1]));
-  } else if (!law->range && law->fit_to) {
-    reader.fail(law.path, fmt::format("{} is missing: another material has strains without end; say which the table "
-                                      "shall hold",
-                                      schema::name(&TableLaw::range)));
   }
   const bool has_weight =
       std::any_of(law->points.begin(), law->points.end(), [](const Point& point) { return point.weight > 0; });
   if (!law->points.empty() && !has_weight) reader.fail(law[&TableLaw::points].path, "no point has a weight above 0");
-  const bool has_points = !law->data.empty() || !law->points.empty();
   const bool has_shear = !law->shear_data.empty() || !law->shear_points.empty();
-  if (law->kind == Kind::le_nurbs && has_points && !has_shear) {
-    reader.fail(law.path, fmt::format("the key {} is missing: points along the axes say nothing about shear",
-                                      schema::name(&TableLaw::shear_data)));
-  }
   if (law->fit_to && has_shear) {
     reader.fail_key(law->shear_data.empty() ? law[&TableLaw::shear_points].path : law[&TableLaw::shear_data].path,
                     fmt::format("shear cannot stand beside {}, which gives the shear too; leave it out",

@@ -249,11 +249,15 @@ struct TableLaw {
     if (along_axes) {
       keys.is("le_nurbs", "table of stresses over strains along the foil's axes");
       keys.exactly_one({"data", "points", "fit_to"});
+      for (const char* points : {"data", "points"}) {
+        keys.needs(points, {"shear_data", "shear_points"}, "points along the axes say nothing about shear");
+      }
     } else {
       keys.is("pd_nurbs", "isotropic table of principal stresses over principal strains");
       keys.at_least_one({"data", "points", "fit_to"});
       keys.not_both("data", "points");
     }
+    keys.needs("fit_to", {"range"}, "another material has strains without end; say which the table shall hold");
   }
   static void check(Reader& reader, const At<TableLaw>& law);
 };

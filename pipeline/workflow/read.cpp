@@ -307,7 +307,12 @@ Workflow read_stage(const std::filesystem::path& file) {
 }
 
 std::string effective_settings(const Workflow& workflow, const StageSettings& stage) {
-  return yaml::write_yaml(settings_node(workflow, {stage}));
+  Workflow computed = workflow; // without what changes no result
+  for (auto& [name, material] : computed.materials) {
+    material.strength.reset();
+    material.source.reset();
+  }
+  return yaml::write_yaml(settings_node(computed, {stage}));
 }
 
 std::string stage_yaml(const Workflow& workflow, const StageSettings& stage) {

@@ -68,7 +68,8 @@ Workflow read_stage(const std::filesystem::path& file);
 // the place each value came from. The same workflow gives the same bytes; no absolute path and no time enters.
 std::string stage_yaml(const Workflow& workflow, const StageSettings& stage);
 
-// The same without the places: equal texts mean equal settings, however the user's file is laid out.
+// The same without the places and what changes no result (strength, sources, the name): equal texts mean equal
+// settings, however the user's file is laid out.
 std::string effective_settings(const Workflow& workflow, const StageSettings& stage);
 
 // The JSON schema of workflow files (configs/workflow.schema.json) and the reference of all keys as text.

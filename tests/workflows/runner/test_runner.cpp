@@ -177,6 +177,15 @@ TEST_F(RunnerTest, LayoutAndCommentsMakeNothingStale) {
   EXPECT_THAT(ran(), IsEmpty());
 }
 
+TEST_F(RunnerTest, NamesSourcesAndStrengthsMakeNothingStale) {
+  pneuma({"w.yaml"});
+  change("name: Test cushion", "name: Another");
+  change("  etfe: {", "  etfe: {source: a book, strength: {characteristic: 21 MPa}, ");
+  EXPECT_EQ(pneuma({"w.yaml"}).code, 0);
+  EXPECT_THAT(ran(), IsEmpty());
+  EXPECT_THAT(text_of(out("gust") / "stage.yaml"), HasSubstr("characteristic"));
+}
+
 TEST_F(RunnerTest, ChangedSettingRunsItsStageAndWhatDependsOnIt) {
   pneuma({"w.yaml"});
   change("kappa: 1.4", "kappa: 1.2");

@@ -326,7 +326,7 @@ const Bad cases[] = {
     {"TableAlongAxesWithoutShear",
      braced,
      "@{law: le_nurbs, data: a.csv,",
-     {"the key `shear_data` is missing: points along the axes say nothing about shear"}},
+     {"`etfe` needs `shear_data` or `shear_points` beside `data`: points along the axes say nothing about shear"}},
     {"FitToAnUnknownMaterial",
      elastic,
      "law: pd_nurbs, fit_to: @foill, range: [0, 0.2], density: 1 g/cm3}\n  foil: {law: elastic, E: 1 GPa, nu: 0.4",
@@ -343,7 +343,7 @@ const Bad cases[] = {
     {"FitWithoutRange",
      braced,
      "@{law: pd_nurbs, fit_to: foil, density: 1 g/cm3}\n  foil: {law: elastic, E: 1 GPa, nu: 0.4,",
-     {"`range` is missing: another material has strains without end"}},
+     {"`etfe` needs `range` beside `fit_to`: another material has strains without end"}},
     {"FitToAFoilThatFlows",
      elastic,
      "law: pd_nurbs, fit_to: @foil, range: [0, 0.2], density: 1 g/cm3}\n  foil: {law: j2, E: 1 GPa, nu: 0.4, "
