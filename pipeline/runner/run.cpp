@@ -55,6 +55,7 @@ struct Job {
   std::string state; // sha256 of its result once done
   Provenance made_from;
   Child child;
+  std::string note; // about its input, which it warns of
   std::string unfinished_line;
   std::unique_ptr<files::GrowingFile> log; // none: not running, or it cannot be written
   Clock::time_point start;
@@ -141,7 +142,9 @@ private:
     input.progress = Progress::done;
     const Verdict verdict =
         examine(input.files, wanted(input, made->input), workflow::stage_yaml(workflow_, *input.stage));
-    if (!verdict.fresh) say(fmt::format("{}: used as it is, although {}", input.stage->id, verdict.reason));
+    if (verdict.fresh) return;
+    one.note = fmt::format("`{}` is used as it is, although {}", input.stage->id, verdict.reason);
+    say(fmt::format("{}: {}", one.stage->id, one.note));
   }
 
   // A chain of stages never runs side by side: then each gets all cores.
@@ -221,6 +224,7 @@ private:
     std::vector<std::string> arguments = {"--config", one.files.config.string()};
     if (!one.from.empty()) arguments.insert(arguments.end(), {"--in", job(one.from).files.state.string()});
     arguments.insert(arguments.end(), {"--out", one.files.state.string(), "--threads", std::to_string(threads_)});
+    if (!one.note.empty()) arguments.insert(arguments.end(), {"--note", one.note});
     one.start = Clock::now();
     one.child = start(program, arguments);
     one.progress = Progress::running;

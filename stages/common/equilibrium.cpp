@@ -314,7 +314,7 @@ private:
     pipeline::state::write_state(state, *start_.outputs, start_.outputs->state_name());
     io_ += writing.seconds();
 
-    Summary summary(origin_of(start_));
+    Summary summary(origin_of(start_), start_.arguments.notes);
     summary.set("stage", start_.stage().run);
     summary.set("id", start_.stage().id);
     summary.set("converged", reached);

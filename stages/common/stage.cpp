@@ -24,12 +24,18 @@ constexpr const char* version = "0.1.0";
 } // namespace
 
 Arguments read_arguments(const char* program, bool needs_input, int argc, char** argv) {
-  const std::string usage = fmt::format("usage: {} --config stage.yaml {}--out state.hdf [--threads N] [--check]",
-                                        program, needs_input ? "--in state.hdf " : "");
-  const option options[] = {{"config", required_argument, nullptr, 'c'}, {"in", required_argument, nullptr, 'i'},
-                            {"out", required_argument, nullptr, 'o'},    {"threads", required_argument, nullptr, 't'},
-                            {"check", no_argument, nullptr, 'k'},        {"help", no_argument, nullptr, 'h'},
-                            {"version", no_argument, nullptr, 'v'},      {nullptr, 0, nullptr, 0}};
+  const std::string usage =
+      fmt::format("usage: {} --config stage.yaml {}--out state.hdf [--threads N] [--check] [--note TEXT]", program,
+                  needs_input ? "--in state.hdf " : "");
+  const option options[] = {{"config", required_argument, nullptr, 'c'},
+                            {"in", required_argument, nullptr, 'i'},
+                            {"out", required_argument, nullptr, 'o'},
+                            {"threads", required_argument, nullptr, 't'},
+                            {"check", no_argument, nullptr, 'k'},
+                            {"note", required_argument, nullptr, 'n'},
+                            {"help", no_argument, nullptr, 'h'},
+                            {"version", no_argument, nullptr, 'v'},
+                            {nullptr, 0, nullptr, 0}};
   Arguments arguments;
   opterr = 0;
   for (int c = 0; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
@@ -53,6 +59,9 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
     }
     case 'k':
       arguments.check = true;
+      break;
+    case 'n':
+      arguments.notes.emplace_back(optarg);
       break;
     case 'h':
       base::say(usage);
@@ -141,6 +150,7 @@ Start read_start(const char* kind, int argc, char** argv) {
   check_laws(start.workflow.materials, start.workflow.site.temperature);
   if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
   if (needs_input && !start.arguments.in.empty()) read_input(start);
+  for (const std::string& note : start.arguments.notes) base::warn(note);
   if (!start.arguments.check) {
     start.outputs = std::make_unique<pipeline::files::Outputs>(start.arguments.out, start.arguments.in);
   }

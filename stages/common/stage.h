@@ -20,11 +20,12 @@ using base::VecX;
 using pipeline::state::State;
 using pipeline::workflow::Workflow;
 
-// The command line of every stage: --config stage.yaml [--in a.hdf] --out b.hdf [--threads N] [--check].
+// The command line of every stage: --config stage.yaml [--in a.hdf] --out b.hdf [--threads N] [--check] [--note TEXT].
 struct Arguments {
   std::filesystem::path config, in, out;
   int threads = 1;
-  bool check = false; // read and check everything, compute nothing
+  bool check = false;             // read and check everything, compute nothing
+  std::vector<std::string> notes; // warnings about the input, to stand among those of the stage
 };
 
 // Throws InputError; prints help or version and exits for --help and --version.

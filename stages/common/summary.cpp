@@ -29,8 +29,9 @@ struct Summary::Data {
   }
 };
 
-Summary::Summary(const Vec3& origin) : data_(std::make_unique<Data>()) {
+Summary::Summary(const Vec3& origin, const std::vector<std::string>& warnings) : data_(std::make_unique<Data>()) {
   data_->origin = origin;
+  for (const std::string& warning : warnings) append("warnings", warning);
 }
 Summary::~Summary() = default;
 

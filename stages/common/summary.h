@@ -16,7 +16,8 @@ using base::Vec3;
 // summary.json: the result keys of the workflow contract, SI units. A key that was not computed is absent.
 class Summary {
 public:
-  explicit Summary(const Vec3& origin); // of the state's coordinates, in those of the user
+  // `origin`: of the state's coordinates, in those of the user.
+  explicit Summary(const Vec3& origin, const std::vector<std::string>& warnings = {});
   ~Summary();
   Summary(const Summary&) = delete;
   Summary& operator=(const Summary&) = delete;

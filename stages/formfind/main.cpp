@@ -72,7 +72,7 @@ void run(const common::Start& start) {
     forms[b] = formfinding::find_form(state.mesh, state.fixed, flat, targets[b], options);
   });
 
-  common::Summary summary(common::origin_of(start));
+  common::Summary summary(common::origin_of(start), start.arguments.notes);
   common::History history(*start.outputs);
   int updates = 0;
   int factorizations = 0;

@@ -95,7 +95,7 @@ common::State make_state(const common::Start& start) {
 void run(const common::Start& start) {
   const common::Clock clock;
   const common::State state = make_state(start);
-  common::Summary summary(common::origin_of(start));
+  common::Summary summary(common::origin_of(start), start.arguments.notes);
   Index elements = 0;
   for (const geometry::Block& block : state.mesh.blocks) elements += state.mesh.element_count(block);
   std::string errors;

@@ -209,7 +209,7 @@ void run(const common::Start& start) {
   solver::linear::prepare_blas(start.arguments.threads);
   Welded welded = cut_and_flatten(start, settings, chosen);
 
-  common::Summary summary(common::origin_of(start));
+  common::Summary summary(common::origin_of(start), start.arguments.notes);
   summary.set("stage", "pattern");
   summary.set("id", start.stage().id);
   summary.set("converged", true);

@@ -87,15 +87,22 @@ TEST_F(Stages, SecondRunDoesNothingAndAChangeRunsOnlyWhatDependsOnIt) {
 TEST_F(Stages, SameWorkflowGivesTheSameBytesWithOneThreadAndTwo) {
   write(cushion("T6", "  gust: {run: wind, from: inflated, gas: {main: {law: closed}}, loads: [{name: s, foil: upper, "
                       "wind: -0.6 kPa}]}\n"));
-  ASSERT_EQ(pneuma("run w.yaml --out one --jobs 1").code, 0); // a stage at a time with all cores
-  ASSERT_EQ(pneuma("run w.yaml --out two --jobs 2").code, 0); // with half of them each
-  const auto digest = [&](const char* where) {
-    std::string text;
-    std::ifstream(folder / where / "gust" / "state.hdf.sha256") >> text;
-    return text;
-  };
-  EXPECT_EQ(digest("one"), digest("two"));
-  EXPECT_FALSE(digest("one").empty());
+  ASSERT_EQ(pneuma("run w.yaml").code, 0);
+  for (const auto& [id, run, from] : {std::array{"form", "formfind", "mesh"}, std::array{"inflated", "inflate", "form"},
+                                      std::array{"gust", "wind", "inflated"}}) {
+    std::array<std::string, 2> bytes;
+    for (const int threads : {1, 2}) {
+      const fs::path file = folder / "o.hdf";
+      const Outcome outcome = call((programs / "pneuma-").string() + run + " --config " +
+                                   (out(id) / "stage.yaml").string() + " --in " + (out(from) / "state.hdf").string() +
+                                   " --out " + file.string() + " --threads " + std::to_string(threads));
+      ASSERT_EQ(outcome.code, 0) << outcome.text;
+      std::ifstream stream(file, std::ios::binary);
+      bytes[static_cast<std::size_t>(threads - 1)] = {std::istreambuf_iterator<char>(stream), {}};
+    }
+    EXPECT_FALSE(bytes[0].empty());
+    EXPECT_TRUE(bytes[0] == bytes[1]) << id;
+  }
 }
 
 TEST_F(Stages, StressFreeFormInflatesAndStretches) {
@@ -320,6 +327,42 @@ TEST_F(Stages, EachStageRunsAloneAndRefusesADamagedOrWrongState) {
   fs::resize_file(out("form") / "state.hdf", 5000);
   EXPECT_EQ(inflate(out("form") / "state.hdf").code, 3);
   EXPECT_EQ(call((programs / "pneuma-inflate").string() + " --nonsense").code, 2);
+}
+
+TEST_F(Stages, AStateOfAnotherCushionIsRefusedWithBothValues) {
+  write(cushion("T3", ""));
+  ASSERT_EQ(pneuma("run w.yaml").code, 0);
+  fs::copy_file(out("form") / "state.hdf", folder / "old.hdf");
+  const std::pair<std::string, std::string> changes[] = {
+      {"thickness: 200 um", "`cushion.foils.0.thickness` 0.0002 m, the settings say 0.0001 m"},
+      {"E: 900 MPa", "`materials.foil.E` 900000000 Pa, the settings say 800000000 Pa"},
+      {"length: 6 m", "`cushion.plan.length` 6 m, the settings say 7 m"}};
+  const char* others[] = {"thickness: 100 um", "E: 800 MPa", "length: 7 m"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::string text = cushion("T3", "");
+    text.replace(text.find(changes[i].first), changes[i].first.size(), others[i]);
+    write(text);
+    ASSERT_EQ(pneuma("run w.yaml").code, 0);
+    const Outcome outcome =
+        call((programs / "pneuma-inflate").string() + " --config " + (out("inflated") / "stage.yaml").string() +
+             " --in " + (folder / "old.hdf").string() + " --out " + (folder / "x.hdf").string());
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_THAT(outcome.text, HasSubstr(changes[i].second));
+    EXPECT_FALSE(fs::exists(folder / "x.hdf"));
+  }
+}
+
+TEST_F(Stages, AnInputThatOnlyTakesAsItIsIsWarnedOfInSummaryAndLog) {
+  write(cushion("T3", ""));
+  ASSERT_EQ(pneuma("run w.yaml").code, 0);
+  std::string text = cushion("T3", "");
+  text.replace(text.find("0.89 kN/m"), 9, "0.95 kN/m");
+  write(text);
+  EXPECT_EQ(pneuma("run w.yaml --only inflated --force inflated").code, 0);
+  const std::string said = "`form` is used as it is, although settings changed";
+  EXPECT_THAT(summary("inflated")["warnings"].dump(), HasSubstr(said));
+  std::ifstream log(out("inflated") / "log.txt");
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(log), {}), HasSubstr(said));
 }
 
 TEST_F(Stages, CheckOptionComputesAndWritesNothing) {
