@@ -56,10 +56,6 @@ void PathSettings::check(Reader& reader, const At<PathSettings>& path) {
   }
 }
 
-void Region::check(Reader& reader, const At<Region>& region) {
-  if (region->x && !region->y) reader.fail(region.path, "`region` lacks the key `y`: [from, to]");
-}
-
 void WindSettings::check(Reader& reader, const At<WindSettings>& wind) {
   PathSettings::check(reader, wind);
   std::set<std::string> seen;

@@ -45,9 +45,9 @@ struct VolumeGas {
 
 using Gas = std::variant<RegulatedGas, ClosedGas, VolumeGas>;
 
-// A part of a foil in plan: a box, or a polygon.
+// A part of a foil in plan: a box, a strip across it, or a polygon.
 struct Region {
-  std::optional<std::array<double, 2>> x, y; // m
+  std::optional<std::array<double, 2>> x, y; // m; none: from end to end
   std::optional<std::vector<Vec2>> polygon;  // m
 
   static void declare(auto& keys) {
@@ -55,13 +55,13 @@ struct Region {
                               .judged([](const std::array<double, 2>& ends) {
                                 return ends[0] < ends[1] ? "" : "must rise: the first end must be below the second";
                               });
-    keys("x", &Region::x, interval, "from, to");
-    keys("y", &Region::y, interval, "from, to");
+    keys("x", &Region::x, interval, "from, to; without it all along x");
+    keys("y", &Region::y, interval, "from, to; without it all along y");
     keys("polygon", &Region::polygon, points(3), "corners in plan");
-    keys.exactly_one({"x", "polygon"});
+    keys.at_least_one({"x", "y", "polygon"});
+    keys.not_both("x", "polygon");
     keys.not_both("y", "polygon");
   }
-  static void check(Reader& reader, const At<Region>& region);
 };
 
 struct WindLoad {

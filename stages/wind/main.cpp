@@ -3,6 +3,8 @@
 // taking part as the load case says.
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,11 +22,19 @@ using common::Index;
 using common::Vec3;
 using common::VecX;
 
-geometry::PlanRegion region_of(const std::optional<workflow::Region>& region) {
+geometry::PlanRegion region_of(const std::optional<workflow::Region>& region, std::span<const Vec3> nodes) {
   if (!region) return geometry::WholePlan{};
   if (region->polygon) return geometry::PlanPolygon{*region->polygon};
-  const auto &x = *region->x, &y = *region->y;
-  return geometry::PlanRectangle{{x[0], y[0]}, {x[1], y[1]}};
+  geometry::PlanRectangle box{nodes.front().head<2>(), nodes.front().head<2>()}; // farther than the foil reaches
+  for (const Vec3& node : nodes) {
+    box.low = box.low.cwiseMin(node.head<2>());
+    box.high = box.high.cwiseMax(node.head<2>());
+  }
+  const base::Vec2 margin = base::Vec2::Constant((box.high - box.low).norm());
+  box = {box.low - margin, box.high + margin};
+  if (region->x) std::tie(box.low.x(), box.high.x()) = std::pair((*region->x)[0], (*region->x)[1]);
+  if (region->y) std::tie(box.low.y(), box.high.y()) = std::pair((*region->y)[0], (*region->y)[1]);
+  return box;
 }
 
 // Place of a load in the user's file, for messages.
@@ -47,7 +57,7 @@ pipeline::state::Load load_of(const workflow::Load& load, const std::string& whe
   };
   // the region of a wind or snow load may stick out, but must not miss the foil
   const auto loaded = [&] {
-    geometry::RegionQuadrature inside = quadrature(region_of(load.region));
+    geometry::RegionQuadrature inside = quadrature(region_of(load.region, mesh.nodes));
     if (!(geometry::plan_area(mesh, foil, mesh.nodes, inside) > 0)) {
       throw base::InputError(
           fmt::format("{}load `{}`: nothing of its region lies on foil `{}`: move it", where, load.name, foil.name));

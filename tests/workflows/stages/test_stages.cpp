@@ -134,12 +134,16 @@ TEST_F(Stages, PatchLoadIsTheSameForceOnEveryMeshAndEndsInTheReactions) {
 TEST_F(Stages, SnowWeighsOnThePlanAndRegionsTakeTheirShare) {
   write(cushion("T6", R"(  snow: {run: wind, from: inflated, loads: [{name: snow, foil: upper, snow: 100 Pa}]}
   half: {run: wind, from: inflated, loads: [{name: snow, foil: upper, snow: 100 Pa, region: {x: [0 m, 3 m], y: [-1.5 m, 1.5 m]}}]}
+  east: {run: wind, from: inflated, loads: [{name: snow, foil: upper, snow: 100 Pa, region: {x: [0 m, 3 m]}}]}
+  north: {run: wind, from: inflated, loads: [{name: snow, foil: upper, snow: 100 Pa, region: {y: [0 m, 1.5 m]}}]}
 )"));
   const Outcome run = pneuma("run w.yaml");
   ASSERT_EQ(run.code, 0) << run.text;
   const double weight = summary("inflated")["reactions"]["sum"][2];
   EXPECT_NEAR(summary("snow")["reactions"]["sum"][2].get<double>(), weight + 1800, 1e-5);
-  EXPECT_NEAR(summary("half")["reactions"]["sum"][2].get<double>(), weight + 900, 0.01);
+  for (const char* part : {"half", "east", "north"}) { // a side left out goes from end to end
+    EXPECT_NEAR(summary(part)["reactions"]["sum"][2].get<double>(), weight + 900, 0.01) << part;
+  }
 }
 
 TEST_F(Stages, FilmWithTooMuchPressureEndsWithFiveAndSaysWhatWouldDo) {
