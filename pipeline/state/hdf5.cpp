@@ -213,7 +213,8 @@ void Group::write(const std::string& name, const std::vector<std::string>& texts
   std::size_t longest = 1;
   bool ascii = true;
   for (const std::string& text : texts) {
-    if (text.find('\0') != std::string::npos) throw std::invalid_argument(where(name) + ": a text with a NUL cannot be stored");
+    if (text.find('\0') != std::string::npos)
+      throw std::invalid_argument(where(name) + ": a text with a NUL cannot be stored");
     longest = std::max(longest, text.size());
     ascii = ascii && is_ascii(text);
   }
