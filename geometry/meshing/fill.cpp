@@ -14,6 +14,11 @@
 #include "geometry/base/errors.h"
 #include "geometry/polygon.h"
 
+// gmsh sets an option of windows that are never opened, and FLTK then writes its settings to the user's home and to
+// /etc: Fl::option(Fl_Option, bool) is answered here instead.
+extern "C" void set_fltk_option(int option, bool value) __asm__("_ZN2Fl6optionENS_9Fl_OptionEb");
+extern "C" void set_fltk_option(int, bool) {}
+
 namespace pneuma::geometry::meshing {
 
 namespace {

@@ -12,11 +12,7 @@ endif()
 
 find_program(PNEUMA_CCACHE ccache)
 if(PNEUMA_CCACHE)
-  set(settings CCACHE_SLOPPINESS=pch_defines,time_macros)
-  if(CMAKE_BUILD_TYPE STREQUAL Release) # without paths of debuggers: another clone's objects serve as well
-    list(APPEND settings CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1)
-  endif()
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env ${settings} ${PNEUMA_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${PNEUMA_CCACHE})
 endif()
 
 # g++ 12 reports -Wrestrict falsely for "literal" + std::string at -O3 (GCC bug 105651)

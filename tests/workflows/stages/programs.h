@@ -51,6 +51,21 @@ stages:
          pressure + "}, prestress: {all: 100 N/m}}\n" + stages;
 }
 
+// A small cushion that goes through every kind of stage.
+inline const std::string every_stage = R"(pneuma: 1
+materials: {foil: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}}
+cushion:
+  plan: {shape: rectangle, length: 2 m, width: 1 m}
+  foils: [{name: upper, material: foil, thickness: 200 um}, {name: lower, material: foil, thickness: 200 um}]
+  chambers: [{name: main, between: [upper, lower]}]
+mesh: {element: T6, size: 0.25 m}
+stages:
+  form: {run: formfind, from: mesh, gauge_pressure: {main: 400 Pa}, prestress: {all: 0.5 kN/m}}
+  strips: {run: pattern, from: form, strips_per_foil: 2, direction: 0 deg, lines: straight}
+  up: {run: inflate, from: strips, gauge_pressure: {main: 400 Pa}}
+  gust: {run: wind, from: up, loads: [{name: s, foil: upper, wind: -0.3 kPa}]}
+)";
+
 // A folder of its own with the workflow `w.yaml`, removed at the end.
 class InFolder : public testing::Test {
 protected:

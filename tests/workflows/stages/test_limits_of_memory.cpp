@@ -17,20 +17,6 @@ using LimitsOfMemory = InFolder;
 
 constexpr int seconds = 10; // of processor time: one that asks for memory for ever uses it up
 
-constexpr const char* cushion = R"(pneuma: 1
-materials: {foil: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}}
-cushion:
-  plan: {shape: rectangle, length: 2 m, width: 1 m}
-  foils: [{name: upper, material: foil, thickness: 200 um}, {name: lower, material: foil, thickness: 200 um}]
-  chambers: [{name: main, between: [upper, lower]}]
-mesh: {element: T6, size: 0.25 m}
-stages:
-  form: {run: formfind, from: mesh, gauge_pressure: {main: 400 Pa}, prestress: {all: 0.5 kN/m}}
-  strips: {run: pattern, from: form, strips_per_foil: 2, direction: 0 deg, lines: straight}
-  up: {run: inflate, from: strips, gauge_pressure: {main: 400 Pa}}
-  gust: {run: wind, from: up, loads: [{name: s, foil: upper, wind: -0.3 kPa}]}
-)";
-
 struct OneStage {
   const char *id, *run, *from;
 };
@@ -46,7 +32,7 @@ TEST_F(LimitsOfMemory, EveryStageEndsUnderEveryLimitAtWhichItStarts) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "a sanitizer takes terabytes of addresses";
 #endif
-  write(cushion);
+  write(every_stage);
   const Outcome whole = pneuma("run w.yaml");
   ASSERT_EQ(whole.code, 0) << whole.text;
   for (const OneStage& stage :
@@ -70,7 +56,7 @@ TEST_F(LimitsOfMemory, CheckEndsUnderEveryLimitAtWhichItStarts) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "a sanitizer takes terabytes of addresses";
 #endif
-  write(cushion);
+  write(every_stage);
   for (const double gigabytes : {0.03, 0.05, 0.1, 0.16, 0.2, 0.25, 0.3, 0.6}) {
     const std::vector<std::string> words = {programs / "pneuma", "check", "w.yaml"};
     if (run_limited({words[0], "--version"}, folder, {seconds, gigabytes}).code == 127) continue;
