@@ -53,8 +53,8 @@ void remove_outputs(const fs::path& folder, const std::set<std::string>& names) 
     if (fs::is_directory(fs::symlink_status(folder / name, failure))) continue; // nobody's output
     fs::remove(folder / name, failure);
     if (failure) refuse(folder / name, "cannot be removed", failure.value());
-    fs::remove((folder / name).parent_path() == folder ? fs::path() : (folder / name).parent_path(),
-               failure); // if empty
+    const fs::path around = (folder / name).parent_path();
+    if (around != folder) fs::remove(around, failure); // if empty
   }
 }
 

@@ -65,9 +65,8 @@ fs::path program_of(const StageSettings& stage) {
   return program_folder() / ("pneuma-" + stage.run);
 }
 
-bool is_interruption(int code) {
-  return code == 128 + SIGINT || code == 128 + SIGTERM || code == 128 + SIGHUP || code == 128 + SIGKILL ||
-         code == static_cast<int>(ExitCode::interrupted);
+bool is_interruption(int code) { // 128 + SIGINT is also what a stage that was interrupted ends with
+  return code == 128 + SIGINT || code == 128 + SIGTERM || code == 128 + SIGHUP || code == 128 + SIGKILL;
 }
 
 class Runner {
@@ -314,10 +313,11 @@ private:
     }
     if (code > 128) return fail(one, static_cast<int>(ExitCode::bug), fmt::format("ended by signal {}", code - 128));
     if (code == 127) return fail(one, static_cast<int>(ExitCode::machine_refuses), "its program could not be started");
-    unless_refused(one, [&] { conclude(one, code); });
+    unless_refused(one, [&] { record(one, code); });
   }
 
-  void conclude(Job& one, int code) {
+  // Notes what a stage that ended by itself was made from and what it left.
+  void record(Job& one, int code) {
     one.made_from.outputs = digests_of_outputs(one.files);
     one.made_from.exit_code = code;
     one.made_from.verdict = verdict_in(one.files.summary);

@@ -21,7 +21,8 @@ namespace pneuma::solver::linear {
 
 namespace {
 
-constexpr std::size_t work_space = std::size_t{1} << 27; // bytes, of a caller
+constexpr std::size_t work_space = std::size_t{1}
+                                   << 27; // bytes, of a caller: what Debian's OpenBLAS maps, seen by strace
 
 // Whether that much memory is to be had now.
 bool is_available(std::size_t bytes) {

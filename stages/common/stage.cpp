@@ -156,6 +156,7 @@ Start read_start(const char* kind, int argc, char** argv) {
   }
   return start;
 }
+
 pipeline::state::Provenance provenance(const Start& start) {
   pipeline::state::Provenance p;
   p.program = start.program + " " + version;

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "pipeline/state/state_file.h"
+#include "tests/unit/pipeline/state/temporary_folder.h"
 #include "tests/workflows/stages/programs.h"
 
 namespace pneuma::tests {
@@ -14,11 +15,6 @@ namespace {
 using base::Vec2;
 using base::Vec3;
 using pipeline::state::State;
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 class Anywhere : public InFolder {
 protected:

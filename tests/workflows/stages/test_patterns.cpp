@@ -10,6 +10,7 @@
 
 #include "pipeline/state/state_file.h"
 #include "tests/unit/pipeline/drawing/dxf_reader.h"
+#include "tests/unit/pipeline/state/temporary_folder.h"
 #include "tests/workflows/stages/programs.h"
 
 namespace pneuma::tests {
@@ -38,12 +39,6 @@ std::string cushion(const std::string& element, const std::string& plan, const s
 }
 
 const std::string inflated = "  inflated: {run: inflate, from: strips, gauge_pressure: {main: 400 Pa}}\n";
-
-std::string bytes_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 class Patterns : public InFolder {
 protected:

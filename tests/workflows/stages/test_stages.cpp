@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "pipeline/state/state_file.h"
+#include "tests/unit/pipeline/state/temporary_folder.h"
 #include "tests/workflows/stages/programs.h"
 
 namespace pneuma::tests {
@@ -97,8 +98,7 @@ TEST_F(Stages, SameWorkflowGivesTheSameBytesWithOneThreadAndTwo) {
                                    (out(id) / "stage.yaml").string() + " --in " + (out(from) / "state.hdf").string() +
                                    " --out " + file.string() + " --threads " + std::to_string(threads));
       ASSERT_EQ(outcome.code, 0) << outcome.text;
-      std::ifstream stream(file, std::ios::binary);
-      bytes[static_cast<std::size_t>(threads - 1)] = {std::istreambuf_iterator<char>(stream), {}};
+      bytes[static_cast<std::size_t>(threads - 1)] = bytes_of(file);
     }
     EXPECT_FALSE(bytes[0].empty());
     EXPECT_TRUE(bytes[0] == bytes[1]) << id;
@@ -365,8 +365,7 @@ TEST_F(Stages, AnInputThatOnlyTakesAsItIsIsWarnedOfInSummaryAndLog) {
   EXPECT_EQ(pneuma("run w.yaml --only inflated --force inflated").code, 0);
   const std::string said = "`form` is used as it is, although settings changed";
   EXPECT_THAT(summary("inflated")["warnings"].dump(), HasSubstr(said));
-  std::ifstream log(out("inflated") / "log.txt");
-  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(log), {}), HasSubstr(said));
+  EXPECT_THAT(bytes_of(out("inflated") / "log.txt"), HasSubstr(said));
 }
 
 TEST_F(Stages, CheckOptionComputesAndWritesNothing) {
