@@ -23,23 +23,47 @@ double length_around(const std::vector<Vec2>& ring) {
   return length;
 }
 
-std::string ring_fault(const std::vector<Vec2>& ring) {
+constexpr double nothing = 1e-9; // of the way around: what rounding in a drawing program leaves between equal points
+
+std::string place_text(const Vec2& point) {
+  return fmt::format("({:.10g}, {:.10g})", point.x(), point.y());
+}
+
+// An edge that no mesh of the whole could follow.
+std::string short_edge(const Plan& plan) {
+  constexpr double least = 1e-3;
+  const std::vector<Vec2> ring = corner_points(plan);
+  double size = 0;
+  for (const Vec2& point : ring) size = std::max(size, (point - ring.front()).norm());
+  const std::vector<std::string> names = edge_names(plan);
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec2& next = ring[(k + 1) % ring.size()];
+    const double length = (next - ring[k]).norm();
+    if (length >= least * size) continue;
+    return fmt::format("the edge {} from {} to {} is {:.3g} m long, less than a thousandth of the plan ({:.3g} m); "
+                       "leave one of its ends out",
+                       names[k], place_text(ring[k]), place_text(next), length, size);
+  }
+  return {};
+}
+
+} // namespace
+
+std::string ring_fault(const std::vector<Vec2>& ring, const std::string& side) {
   const std::size_t n = ring.size();
-  if (n < 3) return fmt::format("a polygon needs three points at least, not {}", n);
+  if (n < 3) return fmt::format("the outline needs three points at least, not {}", n);
   const double around = length_around(ring);
   if (!std::isfinite(around)) return "a point of the outline is not finite";
-  const auto place = [&](std::size_t k) { return fmt::format("({:.6g}, {:.6g})", ring[k].x(), ring[k].y()); };
-  constexpr double nothing = 1e-9; // what rounding in a drawing program leaves between equal points
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t next = (k + 1) % n;
     if ((ring[next] - ring[k]).norm() > nothing * around) continue;
-    return fmt::format("the points {} and {} of the outline are the same, {}; leave one out", k + 1, next + 1,
-                       place(k));
+    return fmt::format("the {} e{} has no length: the points {} and {} are the same, {}; leave one out", side, k + 1,
+                       k + 1, next + 1, place_text(ring[k]));
   }
   if (const auto sides = crossing_sides(ring)) {
     const auto [a, b] = *sides;
-    return fmt::format("the outline crosses or touches itself: its edges e{} from {} and e{} from {} meet", a + 1,
-                       place(a), b + 1, place(b));
+    return fmt::format("the outline crosses or touches itself: its {0}s e{1} from {2} and e{3} from {4} meet", side,
+                       a + 1, place_text(ring[a]), b + 1, place_text(ring[b]));
   }
   // an equilateral triangle has area / perimeter^2 = 0.048
   const double inside = std::abs(signed_area(ring));
@@ -51,7 +75,10 @@ std::string ring_fault(const std::vector<Vec2>& ring) {
   return {};
 }
 
-} // namespace
+std::vector<Vec2> opened(std::vector<Vec2> ring) {
+  if (ring.size() > 1 && (ring.back() - ring.front()).norm() <= nothing * length_around(ring)) ring.pop_back();
+  return ring;
+}
 
 Triangle equilateral(double side) {
   const double height = side * std::sqrt(3.0) / 2;
@@ -79,12 +106,15 @@ std::vector<base::Vec2> corner_points(const Plan& plan) {
 }
 
 std::string plan_fault(const Plan& plan) {
-  if (const auto* rectangle = std::get_if<Rectangle>(&plan)) {
-    const std::string fault = length_fault("length", rectangle->length);
-    return fault.empty() ? length_fault("width", rectangle->width) : fault;
-  }
   if (const auto* circle = std::get_if<Circle>(&plan)) return length_fault("radius", circle->radius);
-  return ring_fault(corner_points(plan));
+  std::string fault;
+  if (const auto* rectangle = std::get_if<Rectangle>(&plan)) {
+    fault = length_fault("length", rectangle->length);
+    if (fault.empty()) fault = length_fault("width", rectangle->width);
+  } else {
+    fault = ring_fault(corner_points(plan), "edge");
+  }
+  return fault.empty() ? short_edge(plan) : fault;
 }
 
 LocalFrame::LocalFrame(const Plan& plan) {

@@ -38,8 +38,15 @@ std::vector<std::string> edge_names(const Plan& plan);
 // Corners in the order of the edges, each the start of one, m; a circle has none.
 std::vector<base::Vec2> corner_points(const Plan& plan);
 
-// What keeps a plan from being a region (a length that is not positive, points on a line, sides that cross), with the
-// place; empty: nothing.
+// What keeps a ring of points from bounding a region (fewer than three points, two at one place, sides that cross or
+// touch, points on a line), with the place; `side`: what a side is called ("edge" of e1, e2, ...). Empty: nothing.
+std::string ring_fault(const std::vector<base::Vec2>& ring, const std::string& side);
+
+// A ring whose last point may repeat the first, without it.
+std::vector<base::Vec2> opened(std::vector<base::Vec2> ring);
+
+// What keeps a plan from being a region (a length that is not positive, a ring at fault, an edge shorter than a
+// thousandth of the plan), with the edge and its place; empty: nothing.
 std::string plan_fault(const Plan& plan);
 
 // Coordinates about a plan's own centre, the mean of its corners, so that no rounding depends on where it lies: plans

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/LU>
 
@@ -179,6 +180,61 @@ double add_points(const PlanElement<E>& x, bool affine, const Windows& windows, 
 }
 
 } // namespace
+
+namespace {
+
+// Convex pieces that make up a plan. A circle is one, with straight sides that touch it.
+std::vector<std::vector<Vec2>> pieces_of(const Plan& plan) {
+  std::vector<std::vector<Vec2>> pieces;
+  if (const auto* circle = std::get_if<Circle>(&plan)) {
+    constexpr int sides = 1024;
+    const double reach = circle->radius / std::cos(std::numbers::pi / sides);
+    auto& ring = pieces.emplace_back();
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      ring.emplace_back(reach * std::cos(angle), reach * std::sin(angle));
+    }
+    return pieces;
+  }
+  const std::vector<Vec2> corners = corner_points(plan);
+  for (const auto& triangle : triangulate(corners)) {
+    auto& piece = pieces.emplace_back();
+    for (const Index i : triangle) piece.push_back(corners[static_cast<std::size_t>(i)]);
+  }
+  return pieces;
+}
+
+} // namespace
+
+PlanRectangle extent(const Plan& plan) {
+  if (const auto* circle = std::get_if<Circle>(&plan)) {
+    const Vec2 reach = Vec2::Constant(circle->radius);
+    return {-reach, reach};
+  }
+  const std::vector<Vec2> corners = corner_points(plan);
+  PlanRectangle box{corners.front(), corners.front()};
+  for (const Vec2& corner : corners) box = {box.low.cwiseMin(corner), box.high.cwiseMax(corner)};
+  return box;
+}
+
+double area_inside(const Plan& plan, const PlanRegion& region) {
+  if (std::holds_alternative<WholePlan>(region)) return area(plan);
+  double sum = 0;
+  std::vector<Vertex> part, scratch;
+  std::vector<Vec2> ring;
+  const Windows windows = windows_of(region);
+  for (const std::vector<Vec2>& piece : pieces_of(plan)) {
+    for (const std::vector<Vec2>& window : windows.convex) {
+      part.clear();
+      ring.clear();
+      for (const Vec2& corner : piece) part.push_back({corner, corner});
+      clip(part, window, scratch);
+      for (const Vertex& vertex : part) ring.push_back(vertex.plan);
+      if (ring.size() > 2) sum += signed_area(ring);
+    }
+  }
+  return sum;
+}
 
 RegionQuadrature region_quadrature(const Mesh& mesh, const Block& block, std::span<const Vec3> positions,
                                    const PlanRegion& region) {

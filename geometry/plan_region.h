@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/outline.h"
 #include "geometry/polygon.h"
 #include "geometry/quadrature.h"
 
@@ -19,6 +20,13 @@ struct PlanPolygon {
   std::vector<Vec2> points; // simple, of either orientation, not necessarily convex
 };
 using PlanRegion = std::variant<WholePlan, PlanRectangle, PlanPolygon>;
+
+// The smallest rectangle around a plan.
+PlanRectangle extent(const Plan& plan);
+
+// Area of the part of a region that lies in a plan, m2; the rim of a circle is taken 5e-6 of its radius too far out.
+// Throws GeometryError as region_quadrature does.
+double area_inside(const Plan& plan, const PlanRegion& region);
 
 // Points for integrals over the part of a block that lies in a region. The weights are areas of the reference element:
 // times the Jacobian of the plan or of the surface they give integrals over either.

@@ -2,6 +2,7 @@
 #include "geometry/polygon.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -49,6 +50,44 @@ std::optional<std::pair<std::size_t, std::size_t>> crossing_sides(std::span<cons
       const std::size_t b = by_left[j];
       const bool neighbours = (a + 1) % n == b || (b + 1) % n == a;
       if (!neighbours && meet(ring[a], ring[(a + 1) % n], ring[b], ring[(b + 1) % n])) return std::pair(a, b);
+    }
+  }
+  return {};
+}
+
+namespace {
+
+// Of two segments that cross or touch.
+Vec2 meeting_point(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const double turn = cross(b - a, d - c);
+  if (std::abs(turn) > 1e-12 * (b - a).norm() * (d - c).norm()) {
+    return a + std::clamp(cross(c - a, d - c) / turn, 0.0, 1.0) * (b - a);
+  }
+  return (std::max(a.x(), b.x()) >= c.x() && c.x() >= std::min(a.x(), b.x())) ? c : d; // along each other
+}
+
+} // namespace
+
+std::optional<LineCrossing> crossing_lines(std::span<const std::span<const Vec2>> lines) {
+  struct Segment {
+    std::size_t line, number;
+    Vec2 a, b;
+    double left() const { return std::min(a.x(), b.x()); }
+    double right() const { return std::max(a.x(), b.x()); }
+  };
+  std::vector<Segment> segments;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    for (std::size_t k = 0; k + 1 < lines[l].size(); ++k) segments.push_back({l, k, lines[l][k], lines[l][k + 1]});
+  }
+  std::stable_sort(segments.begin(), segments.end(),
+                   [](const Segment& s, const Segment& t) { return s.left() < t.left(); });
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& s = segments[i];
+    for (std::size_t j = i + 1; j < segments.size() && segments[j].left() <= s.right(); ++j) {
+      const Segment& t = segments[j];
+      const bool neighbours = s.line == t.line && (s.number + 1 == t.number || t.number + 1 == s.number);
+      if (neighbours || !meet(s.a, s.b, t.a, t.b)) continue;
+      return LineCrossing{std::min(s.line, t.line), std::max(s.line, t.line), meeting_point(s.a, s.b, t.a, t.b)};
     }
   }
   return {};

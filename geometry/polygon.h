@@ -28,6 +28,14 @@ double signed_area(std::span<const Vec2> ring); // positive counterclockwise
 // Two sides, by their first points, that have a point in common without being neighbours.
 std::optional<std::pair<std::size_t, std::size_t>> crossing_sides(std::span<const Vec2> ring);
 
+// Two lines of straight parts that cross or touch, by their numbers in ascending order, and where; the same twice: one
+// that meets itself. Where several do, one of them.
+struct LineCrossing {
+  std::size_t first, second;
+  Vec2 at;
+};
+std::optional<LineCrossing> crossing_lines(std::span<const std::span<const Vec2>> lines);
+
 bool contains(std::span<const Vec2> ring, const Vec2& point);
 
 // Counterclockwise triangles, by the numbers of their points, that make up a simple polygon of either orientation

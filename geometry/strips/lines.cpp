@@ -324,46 +324,15 @@ CuttingLine given_line(const Surface& surface, std::span<const Vec2> points) {
   return line;
 }
 
-namespace {
-
-// Of two segments that cross or touch.
-Vec2 meeting_point(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const double turn = cross(b - a, d - c);
-  if (std::abs(turn) > 1e-12 * (b - a).norm() * (d - c).norm()) {
-    return a + std::clamp(cross(c - a, d - c) / turn, 0.0, 1.0) * (b - a);
-  }
-  return (std::max(a.x(), b.x()) >= c.x() && c.x() >= std::min(a.x(), b.x())) ? c : d; // along each other
-}
-
-} // namespace
-
 std::string crossing(std::span<const CuttingLine> lines) {
-  struct Segment {
-    std::size_t line, number;
-    Vec2 a, b;
-    double left() const { return std::min(a.x(), b.x()); }
-    double right() const { return std::max(a.x(), b.x()); }
-  };
-  std::vector<Segment> segments;
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    for (std::size_t k = 0; k + 1 < lines[l].plan.size(); ++k)
-      segments.push_back({l, k, lines[l].plan[k], lines[l].plan[k + 1]});
+  std::vector<std::span<const Vec2>> plans;
+  for (const CuttingLine& line : lines) plans.emplace_back(line.plan);
+  const auto found = crossing_lines(plans);
+  if (!found) return {};
+  if (found->first == found->second) {
+    return fmt::format("line {} crosses itself near {}", found->first + 1, text(found->at));
   }
-  std::stable_sort(segments.begin(), segments.end(),
-                   [](const Segment& s, const Segment& t) { return s.left() < t.left(); });
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    const Segment& s = segments[i];
-    for (std::size_t j = i + 1; j < segments.size() && segments[j].left() <= s.right(); ++j) {
-      const Segment& t = segments[j];
-      const bool neighbours = s.line == t.line && (s.number + 1 == t.number || t.number + 1 == s.number);
-      if (neighbours || !meet(s.a, s.b, t.a, t.b)) continue;
-      const Vec2 place = meeting_point(s.a, s.b, t.a, t.b);
-      if (s.line == t.line) return fmt::format("line {} crosses itself near {}", s.line + 1, text(place));
-      return fmt::format("lines {} and {} cross or touch near {}", std::min(s.line, t.line) + 1,
-                         std::max(s.line, t.line) + 1, text(place));
-    }
-  }
-  return {};
+  return fmt::format("lines {} and {} cross or touch near {}", found->first + 1, found->second + 1, text(found->at));
 }
 
 } // namespace pneuma::geometry::strips

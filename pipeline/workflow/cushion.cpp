@@ -83,17 +83,20 @@ void Cushion::check(Reader& reader, const At<Cushion>& cushion) {
 namespace pneuma::pipeline::schema {
 
 using workflow::length;
-using workflow::points;
+using workflow::ring;
 
 namespace {
 
-std::string ring_fault(const std::vector<base::Vec2>& corners) {
+std::string fault_of_corners(const std::vector<base::Vec2>& corners) {
   return geometry::plan_fault(geometry::Polygon{corners});
 }
 
 } // namespace
 
 void declare(Keys<geometry::Rectangle>& keys) {
+  keys.rule([](Reader& reader, const At<geometry::Rectangle>& plan) {
+    if (const std::string fault = geometry::plan_fault(plan.value); !fault.empty()) reader.fail(plan.path, fault);
+  });
   keys("length", &geometry::Rectangle::length, length(), "along x");
   keys("width", &geometry::Rectangle::width, length(), "along y");
   keys.is("rectangle", "edges south, east, north, west");
@@ -112,7 +115,10 @@ void declare(Keys<geometry::Triangle>& keys) {
   keys(
       "points",
       mapped<Triangle>(
-          points(3).items(3, 3).judged(ring_fault),
+          ring(3).judged([](const std::vector<base::Vec2>& corners) {
+            return corners.size() == 3 ? fault_of_corners(corners)
+                                       : fmt::format("a triangle has 3 corners, not {}", corners.size());
+          }),
           [](const std::vector<base::Vec2>& p) {
             return Triangle{{p[0], p[1], p[2]}};
           },
@@ -123,7 +129,7 @@ void declare(Keys<geometry::Triangle>& keys) {
 }
 
 void declare(Keys<geometry::Polygon>& keys) {
-  keys("points", &geometry::Polygon::points, points(3).judged(ring_fault), "corners in order, either way round");
+  keys("points", &geometry::Polygon::points, ring().judged(fault_of_corners), "corners in order, either way round");
   keys.is("polygon", "edges e1 (from the first point to the second), e2, ...; re-entrant corners are allowed");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "geometry/outline.h"
 #include "pipeline/schema/keys.h"
 
 // Forms that several parts of a workflow file share.
@@ -43,6 +44,12 @@ inline Form<Vec2> point() { // in plan
 
 inline Form<std::vector<Vec2>> points(std::size_t least) {
   return list(point().named("point", "a point in plan")).items(least, 100000);
+}
+
+// Corners of a closed line, at most so many; that the last repeats the first is taken as the same.
+inline Form<std::vector<Vec2>> ring(std::size_t most = 1000) {
+  return mapped<std::vector<Vec2>>(list(point().named("point", "a point in plan")).items(3, most + 1), geometry::opened,
+                                   [](const std::vector<Vec2>& corners) { return corners; });
 }
 
 // A vector that is not zero, of length 1; a normalised one stays as it is to the last bit: it is read again from

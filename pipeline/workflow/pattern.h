@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/workflow/formfind.h"
+#include "pipeline/workflow/limits.h"
 
 namespace pneuma::pipeline::workflow {
 
@@ -91,8 +92,8 @@ struct PatternSettings {
     using Self = PatternSettings;
     const auto searches = [](const auto& pattern) { return pattern.curves.empty(); };
     const char* beside_curves = "has no effect beside `curves`, which are the seams themselves";
-    keys("strips_per_foil", &Self::strips_per_foil, integer().at_least(2, "at least 2").usual(2, 50, "usually 2 to 50"),
-         "number of strips");
+    keys("strips_per_foil", &Self::strips_per_foil,
+         integer().between(2, most_strips, "from 2 to 200").usual(2, 50, "usually 2 to 50"), "number of strips");
     keys("roll", &Self::roll, group<Roll>(),
          "the film: every strip must fit on it; alone it gives the fewest strips that fit");
     keys("lines", &Self::lines,
@@ -114,8 +115,8 @@ struct PatternSettings {
                "has no effect beside `curves` or a given `direction`: it chooses among directions");
     keys("curves", &Self::curves,
          each("foil",
-              list(points(2).named("curve", "points in plan from rim to rim"))
-                  .items(1, 10000)
+              list(points(2).items(2, 10000).named("curve", "points in plan from rim to rim"))
+                  .items(1, most_strips - 1)
                   .named("FOIL", "of a foil or `all`"),
               false) // of those that are cut
              .items(1, 1000),

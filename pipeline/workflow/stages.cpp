@@ -8,6 +8,8 @@
 
 #include "pipeline/schema/spelling.h"
 #include "pipeline/workflow/circles.h"
+#include "pipeline/workflow/effect.h"
+#include "pipeline/workflow/in_plan.h"
 
 namespace pneuma::pipeline::workflow {
 
@@ -144,17 +146,6 @@ void check_mesh(Reader& reader, const Cushion& cushion, const At<MeshSettings>& 
   if (mesh->pattern == MeshPattern::structured && is_polygon) {
     reader.fail(mesh[&MeshSettings::pattern].path, "a polygon has no structured pattern; allowed: unstructured");
   }
-  if (!mesh->size) return;
-  const std::string path = mesh[&MeshSettings::size].path;
-  const double area = geometry::area(cushion.plan);
-  const double elements = area / (*mesh->size * *mesh->size);
-  if (elements < 1) {
-    reader.warn(path, fmt::format("{} {} m is larger than the cushion (about {:.3g} m); is it meant?",
-                                  reader.title(path), *mesh->size, std::sqrt(area)));
-  } else if (elements > 500'000) {
-    reader.warn(path, fmt::format("{} {} m makes about {:.0e} elements a foil; is it meant?", reader.title(path),
-                                  *mesh->size, elements));
-  }
 }
 
 void check_inflate(Reader& reader, const StageSettings& stage, const At<InflateSettings>& inflate) {
@@ -242,6 +233,7 @@ void check_loaded_foil(Reader& reader, const Cushion& cushion, const At<Load>& l
 void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, const MeshSettings& mesh) {
   if (!reader.given("cushion.plan") || !reader.is_whole("cushion.plan")) return;
   check_mesh(reader, workflow.cushion, {mesh, path_of(stage)});
+  if (reader.is_whole("cushion")) check_in_plan(reader, workflow.cushion, {mesh, path_of(stage)});
 }
 
 void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, FormfindSettings& form) {
@@ -258,24 +250,30 @@ void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage
 }
 
 // Which foils are flat and need no curves only the stage knows; those it is told to cut do.
-void settle(Reader& reader, const Workflow&, const StageSettings& stage, PatternSettings& pattern) {
-  if (!pattern.foils || pattern.curves.empty() || !reader.knows("foil")) return;
-  const std::vector<std::string>& cut = *pattern.foils;
-  const std::string path = path_of(stage);
-  const auto curves = At<PatternSettings>{pattern, path}[&PatternSettings::curves];
+void settle_curves(Reader& reader, const At<PatternSettings>& pattern, std::map<std::string, PlanCurves>& curves) {
+  if (!pattern->foils || curves.empty() || !reader.knows("foil")) return;
+  const std::vector<std::string>& cut = *pattern->foils;
+  const std::string path = pattern[&PatternSettings::curves].path;
   for (const std::string& foil : cut) {
-    if (curves->contains(foil) || !schema::is_among(foil, reader.names("foil"))) continue;
-    reader.fail(curves.path, fmt::format("{} says nothing about the foil `{}` of {}; name it, or use `all`",
-                                         reader.title(curves.path), foil, schema::name(&PatternSettings::foils)));
+    if (curves.contains(foil) || !schema::is_among(foil, reader.names("foil"))) continue;
+    reader.fail(path, fmt::format("{} says nothing about the foil `{}` of {}; name it, or use `all`",
+                                  reader.title(path), foil, schema::name(&PatternSettings::foils)));
   }
-  std::erase_if(pattern.curves, [&](const auto& one) {
+  std::erase_if(curves, [&](const auto& one) {
     if (schema::is_among(one.first, cut)) return false;
-    const std::string own = below(curves.path, one.first);
+    const std::string own = below(path, one.first);
     if (!reader.given(own)) return true; // of all
     reader.fail_key(own, fmt::format("{} does not name `{}`, so its curves have no effect; foils to be cut: {}",
                                      schema::name(&PatternSettings::foils), one.first, fmt::join(cut, ", ")));
     return true;
   });
+}
+
+void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, PatternSettings& pattern) {
+  const At<PatternSettings> at{pattern, path_of(stage)};
+  settle_curves(reader, at, pattern.curves);
+  if (!reader.is_whole("cushion")) return;
+  check_in_plan(reader, workflow.cushion.plan, at, std::get_if<MeshSettings>(&workflow.stages.front().settings));
 }
 
 void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, InflateSettings& inflate) {
@@ -285,6 +283,7 @@ void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage
   if (!reader.is_whole("cushion")) return;
   settle_pressures(reader, workflow.cushion, inflate.gauge_pressure, at[&InflateSettings::gauge_pressure].path);
   settle_path(reader, workflow.cushion, inflate, path, {});
+  check_in_plan(reader, workflow.cushion.plan, At<PathSettings>(at));
 }
 
 void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage, WindSettings& wind) {
@@ -301,6 +300,7 @@ void settle(Reader& reader, const Workflow& workflow, const StageSettings& stage
         fmt::format("`{}` is connected to `{}` and has no air of its own; say the law of `{}`", chamber, air, air));
   }
   for (const At<Load>& load : items(at[&WindSettings::loads])) check_loaded_foil(reader, cushion, load);
+  check_in_plan(reader, cushion.plan, at);
   for (const std::string& air : airs_of(cushion)) wind.gas.emplace(air, RegulatedGas{});
   for (const Load& load : wind.loads) wind.factors.emplace(load.name, 1);
   settle_path(reader, cushion, wind, path, wind.gas);
@@ -380,6 +380,7 @@ void settle(Reader& reader, Workflow& workflow) {
     std::visit([&](auto& settings) { settle(reader, workflow, stage, settings); }, stage.settings);
   }
   if (!reader.is_whole("stages")) return;
+  if (reader.is_whole("cushion")) check_effects(reader, workflow);
   const LoadsBefore loads(reader, workflow.stages);
   for (std::size_t i = 0; i < workflow.stages.size(); ++i) {
     if (workflow.stages[i].run == "wind") loads.check(i);

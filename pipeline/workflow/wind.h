@@ -57,7 +57,9 @@ struct Region {
                               });
     keys("x", &Region::x, interval, "from, to; without it all along x");
     keys("y", &Region::y, interval, "from, to; without it all along y");
-    keys("polygon", &Region::polygon, points(3), "corners in plan");
+    keys("polygon", &Region::polygon,
+         ring().judged([](const std::vector<Vec2>& corners) { return geometry::ring_fault(corners, "side"); }),
+         "corners in plan");
     keys.at_least_one({"x", "y", "polygon"});
     keys.not_both("x", "polygon");
     keys.not_both("y", "polygon");
@@ -102,7 +104,9 @@ struct Load {
         .or_another();
     keys("region", &Load::region,
          word_or("all", "all of the foil", group<Region>().named("part", "a part in plan")).otherwise("all"),
-         "where it acts");
+         "where it acts")
+        .where([](const auto& load) { return !std::holds_alternative<PatchLoad>(load.kind); },
+               "is not for a patch, which says its own place with `center` and `size`");
     keys.exactly_one({"wind", "snow", "patch"});
   }
 };

@@ -59,7 +59,7 @@ pipeline::state::Load load_of(const workflow::Load& load, const std::string& whe
   const auto loaded = [&] {
     geometry::RegionQuadrature inside = quadrature(region_of(load.region, mesh.nodes));
     if (!(geometry::plan_area(mesh, foil, mesh.nodes, inside) > 0)) {
-      throw base::InputError(
+      throw base::GeometryError(
           fmt::format("{}load `{}`: nothing of its region lies on foil `{}`: move it", where, load.name, foil.name));
     }
     return inside;
@@ -82,19 +82,15 @@ pipeline::state::Load load_of(const workflow::Load& load, const std::string& whe
     dead(loaded(), -snow->weight * start.workflow.site.up.normalized());
   } else {
     const auto& patch = std::get<workflow::PatchLoad>(load.kind);
-    if (load.region) {
-      throw base::InputError(
-          fmt::format("{}load `{}`: a patch says its own place with center and size; region does not go with it", where,
-                      load.name));
-    }
     const geometry::RegionQuadrature inside =
         quadrature(geometry::PlanRectangle{patch.center - 0.5 * patch.size, patch.center + 0.5 * patch.size});
     const double area = geometry::plan_area(mesh, foil, mesh.nodes, inside);
     const double wanted = patch.size.x() * patch.size.y();
     if (area < (1 - 1e-6) * wanted) {
-      throw base::InputError(fmt::format("{}load `{}`: only {} of the patch's {} m2 lie on foil `{}`: move it or make "
-                                         "it smaller",
-                                         where, load.name, common::number(area), common::number(wanted), foil.name));
+      throw base::GeometryError(
+          fmt::format("{}load `{}`: only {} of the patch's {} m2 lie on foil `{}`: move it or make "
+                      "it smaller",
+                      where, load.name, common::number(area), common::number(wanted), foil.name));
     }
     dead(inside, patch.force / area);
   }

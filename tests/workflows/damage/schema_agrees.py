@@ -16,12 +16,13 @@ ALIKE = {  # kinds of damage whose verdict needs no more than keys, types, count
     "key dropped", "key misspelt", "key doubled", "unit dropped", "list shortened", "list lengthened", "list emptied",
     "value as list", "value as map", "value as word", "value as number", "value empty",
 }
-# What `check` says of names that are called elsewhere, of files, of numbers beside numbers, and of laws ("w.yaml:4:9:
+# What `check` says of names that are called elsewhere, of files, of numbers and places beside others, and of laws ("w.yaml:4:9:
 # material `etfe`: ..."): no schema can.
 BEYOND = re.compile(
     r"there is no \w+ `|: material `|says nothing about|a second \w+ `|must rise|cannot be read|no neighbours|"
     r"lies the chamber|cushion has no |which gravity needs|from a formfind stage|lacks the key `chamber`; chambers|"
-    r"anchor")
+    r"anchor|changes nothing|has no effect|the region of load|of the patch|lies (beside|on) the|are the most|"
+    r"from rim to rim|GB of memory|thousandth of the plan")
 
 
 class Loader(yaml.SafeLoader):

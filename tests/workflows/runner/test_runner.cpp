@@ -90,7 +90,8 @@ protected:
       const auto file = folder.write(fmt::format("bin/pneuma-{}", run), script);
       std::filesystem::permissions(file, std::filesystem::perms::owner_all);
     }
-    write(example + "  calm: {run: wind, from: inflated}\n");
+    write(example + "  calm: {run: wind, from: inflated, factors: {push: 0.1}, loads: [{name: push, foil: upper, wind: "
+                    "0.1 kPa}]}\n");
   }
 
   void write(const std::string& text) {

@@ -159,7 +159,7 @@ const Bad cases[] = {
     {"PolygonWithARepeatedPoint",
      rectangle,
      "{shape: polygon, points: @[[0 m, 0 m], [2 m, 0 m], [200 cm, 0 m], [2 m, 2 m]]}",
-     {"the points 2 and 3 of the outline are the same, (2, 0); leave one out"}},
+     {"the edge e2 has no length: the points 2 and 3 are the same, (2, 0); leave one out"}},
     {"PolygonWithoutArea",
      rectangle,
      "{shape: polygon, points: @[[0 m, 0 m], [1 m, 1 m], [2 m, 2 m]]}",
@@ -205,7 +205,7 @@ const Bad cases[] = {
      {"`from` goes in a circle: form <- gust <- inflated <- form"}},
     {"StageCalledMesh",
      "  inflated:",
-     "  @mesh: {run: wind, from: inflated}\n  inflated:",
+     "  @mesh: {run: wind, from: inflated, gas: {top: {law: volume, volume: 9 m3}}}\n  inflated:",
      {"a stage cannot be called `mesh`"}},
     {"WindFromMesh",
      "from: inflated",
@@ -219,7 +219,7 @@ const Bad cases[] = {
     {"LoadOfTheSameNameBefore",
      "  gust:",
      "  later: {run: wind, from: more, loads: [@{name: suction, foil: upper, snow: 1 kPa}]}\n"
-     "  more: {run: wind, from: gust}\n  gust:",
+     "  more: {run: wind, from: gust, factors: {suction: 0}}\n  gust:",
      {"load `suction` acts since stage `gust`: to change it give its factor in `factors`, or choose another name"}},
     {"FormfindFromInflate",
      form,
@@ -233,7 +233,9 @@ const Bad cases[] = {
      {"`run: pattern` cannot start from `mesh` (`run: mesh`); it starts from: formfind"}},
     {"WindFromPattern",
      "from: inflated",
-     "from: @strips\n  strips: {run: pattern, from: form, strips_per_foil: 6}\n  other:\n    run: wind\n    from: "
+     "from: @strips\n    gas: {bottom: {law: volume, volume: 9 m3}}\n  strips: {run: pattern, from: form, "
+     "strips_per_foil: 6}\n  other:\n    "
+     "run: wind\n    from: "
      "inflated",
      {"`run: wind` cannot start from `strips` (`run: pattern`); it starts from: inflate"}},
     {"ReferenceAndPrestressFromPattern",
@@ -444,8 +446,8 @@ const BadKeys pattern_cases[] = {
     {"UnknownKey",
      "@strips_per_fol: 6, roll: {width: 1.5 m, weld: 12 mm, selvedge: 10 mm}",
      {"unknown key `strips_per_fol` in `strips`; did you mean `strips_per_foil`?"}},
-    {"OneStrip", "strips_per_foil: @1", {"`strips_per_foil` must be at least 2, not 1"}},
-    {"NegativeStrips", "strips_per_foil: @-3", {"`strips_per_foil` must be at least 2, not -3"}},
+    {"OneStrip", "strips_per_foil: @1", {"`strips_per_foil` must be from 2 to 200, not 1"}},
+    {"NegativeStrips", "strips_per_foil: @-3", {"`strips_per_foil` must be from 2 to 200, not -3"}},
     {"HalfAStrip", "strips_per_foil: @2.5", {"`strips_per_foil` must be a whole number, not `2.5`"}},
     {"RollWithoutSelvedge",
      "roll: @{width: 1.5 m, weld: 12 mm}",
@@ -479,7 +481,7 @@ const BadKeys pattern_cases[] = {
      "foils: [upper, lower], curves: @{upper: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}",
      {"`curves` says nothing about the foil `lower` of `foils`; name it, or use `all`"}},
     {"CurvesOfAFoilNotToBeCut",
-     "foils: [lower], curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]], @upper: [[[0 m, -1 m], [0 m, 1 m]]]}",
+     "foils: [lower], curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]], @upper: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}",
      {"`foils` does not name `upper`, so its curves have no effect; foils to be cut: lower"}},
     {"LinesBesideCurves",
      "curves: {all: [[[0 m, -1.5 m], [0 m, 1.5 m]]]}, @lines: straight, @direction: auto, @chosen_by: waste",

@@ -444,19 +444,19 @@ TEST(GoodWorkflow, ImplausibleValuesAreWarnings) {
   EXPECT_THAT(warnings_of(replaced(example, "cushion:\n", "site: {ambient_pressure: 1 kPa}\ncushion:\n")),
               HasSubstr("`ambient_pressure` 1000 Pa is unusual"));
   EXPECT_THAT(warnings_of(replaced(example, "size: 0.15 m", "size: 15 m")), HasSubstr("larger than the cushion"));
-  EXPECT_EQ(warnings_of(replaced(example, "size: 0.15 m", "size: 0.15 mm")),
-            "15:27: `size` 0.15 mm is unusual (usually 1 cm to 100 m), taken as 0.00015 m; is it meant?\n"
-            "15:27: `size` 0.00015 m makes about 8e+08 elements a foil; is it meant?\n");
+  EXPECT_EQ(warnings_of(replaced(example, "element: T6, size: 0.15 m", "element: T3, size: 8 mm")),
+            "15:27: `size` 8 mm is unusual (usually 1 cm to 100 m), taken as 0.008 m; is it meant?\n"
+            "15:27: `size` 0.008 m makes about 5.6e+05 elements a foil; is it meant?\n");
 }
 
 TEST(GoodWorkflow, TemplatesAndMergeKeysSaveRepeating) {
-  const std::string text =
-      replaced(replaced(example, "pneuma: 1\n",
-                        "pneuma: 1\nx-air: &air {law: closed, kappa: 1.4}\nx-gust: &gust\n  run: wind\n"
-                        "  from: inflated\n  gas: {top: *air}\n"),
-               "  gust:\n    run: wind\n    from: inflated\n    gas: {top: {law: closed, kappa: 1.4}}\n    loads:",
-               "  gust: {<<: *gust, loads: [{name: push, foil: upper, wind: 0.6 kPa}]}\n"
-               "  slow: {<<: *gust, gas: {top: {<<: *air, kappa: 1}}}\n  lull:\n    <<: *gust\n    loads:");
+  const std::string text = replaced(
+      replaced(example, "pneuma: 1\n",
+               "pneuma: 1\nx-air: &air {law: closed, kappa: 1.4}\nx-gust: &gust\n  run: wind\n"
+               "  from: inflated\n  gas: {top: *air}\n"),
+      "  gust:\n    run: wind\n    from: inflated\n    gas: {top: {law: closed, kappa: 1.4}}\n    loads:",
+      "  gust: {<<: *gust, loads: [{name: push, foil: upper, wind: 0.6 kPa}]}\n"
+      "  slow: {<<: *gust, gas: {top: {<<: *air, kappa: 1, temperature: 0 degC}}}\n  lull:\n    <<: *gust\n    loads:");
   const Workflow workflow = read_good(text);
   ASSERT_EQ(workflow.stages.size(), 6U);
   const auto wind = [&](std::size_t i) { return std::get<WindSettings>(workflow.stages[i].settings); };
@@ -492,8 +492,9 @@ std::vector<std::string> varied() {
       replaced(
           example, "loads: [{name: suction, foil: upper, wind: -0.6 kPa}]",
           "loads: [{name: a, foil: upper, snow: 0.7 kPa, region: {x: [-1 m, 0.1 m], y: [-50 cm, 50 cm]}},"
-          " {name: b, foil: lower, patch: {center: [0.1 m, 0 m], size: [30 cm, 0.3 m], force: [0 N, 0 N, -1.1 kN]},"
-          " region: {polygon: [[0 m, 0 m], [1 m, 0 m], [1 m, 1 ft]]}}]\n    factors: {a: 1.5, b: 0.1}"),
+          " {name: b, foil: lower, patch: {center: [0.1 m, 0 m], size: [30 cm, 0.3 m], force: [0 N, 0 N, -1.1 kN]}},"
+          " {name: c, foil: lower, wind: 0.1 kPa, region: {polygon: [[0 m, 0 m], [1 m, 0 m], [1 m, 1 ft]]}}]\n"
+          "    factors: {a: 1.5, b: 0.1}"),
       replaced(replaced(example, "cushion:\n",
                         "site: {up: [0.1, 0.2, 0.97], temperature: 11.3 degC, gravity: on}\ncushion:\n"),
                "thickness: 250 um", "thickness: 250 um, warp: 33 deg"),
