@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The programs themselves, chained by the runner and one by one, on small cushions.
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -423,6 +424,21 @@ TEST_F(Stages, MeshOfTooManyElementsIsRefusedAtItsPlace) {
   EXPECT_THAT(run.text,
               testing::ContainsRegex(
                   "w.yaml:10:[0-9]+: `size` 0.001 m makes about 3.6e.07 elements a foil; 5e.06 are the most"));
+}
+
+// Measured: 0.3 s for the slowest; asserted far above, as machines differ.
+TEST(Check, OfEveryProjectIsQuick) {
+  double slowest = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(PNEUMA_SOURCE_DIR "/projects")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = call((programs / "pneuma").string() + " check " + entry.path().string());
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    slowest = std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::printf("check of the slowest project: %.2f s\n", slowest);
+  constexpr double measured = 0.3;
+  EXPECT_LT(slowest, 10 * measured);
 }
 
 TEST_F(Stages, InterruptedChainKeepsWhatIsComputed) {
