@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/quadrature.h"
 #include "geometry/shape_functions.h"
 
@@ -120,10 +121,10 @@ void Chart::check_graph() const {
     }
     if (normal.z() > upright * area) continue;
     place /= area;
-    throw base::GeometryError(fmt::format(
-        "the surface {} at ({:.6g}, {:.6g}, {:.6g}), element {}: it must be a graph over its plan to be cut; less "
-        "pressure or more prestress makes it flatter",
-        normal.z() < -upright * area ? "folds over" : "stands upright", place.x(), place.y(), place.z(), e));
+    throw base::GeometryError(
+        fmt::format("the surface {} at {}, element {}: it must be a graph over its plan to be cut; less "
+                    "pressure or more prestress makes it flatter",
+                    normal.z() < -upright * area ? "folds over" : "stands upright", base::place_text(place), e));
   }
 }
 
@@ -156,7 +157,7 @@ Chart::Nearest Chart::nearest(const Vec2& plan) const {
       if (beside.norm() > (box.high - box.low).norm()) continue;
       if (!best || beside.norm() < best->beside.norm()) best = Nearest{{e, place[0], place[1]}, beside};
     }
-    if (!best) throw base::GeometryError(fmt::format("({:.6g}, {:.6g}) lies beside the surface", plan.x(), plan.y()));
+    if (!best) throw base::GeometryError(fmt::format("{} lies beside the surface", base::place_text(plan)));
     return *best;
   });
 }

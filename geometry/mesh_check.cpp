@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/mesh_check.h"
+#include "geometry/base/place.h"
 
 #include <algorithm>
 #include <array>
@@ -37,7 +38,7 @@ struct Report {
     constexpr int most = 20;
     int& count = counts[static_cast<std::size_t>(kind)];
     if (++count > most) return;
-    std::string text = fmt::format("{} at ({:.6g}, {:.6g}, {:.6g})", what, place.x(), place.y(), place.z());
+    std::string text = fmt::format("{} at {}", what, base::place_text(place));
     if (count == most) text += "; further faults of this kind are not listed";
     faults.push_back({kind, severity, text, place});
   }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/base/place.h"
 #include "geometry/polygon.h"
 
 namespace pneuma::geometry {
@@ -25,10 +26,6 @@ double length_around(const std::vector<Vec2>& ring) {
 
 constexpr double nothing = 1e-9; // of the way around: what rounding in a drawing program leaves between equal points
 
-std::string place_text(const Vec2& point) {
-  return fmt::format("({:.10g}, {:.10g})", point.x(), point.y());
-}
-
 // An edge that no mesh of the whole could follow.
 std::string short_edge(const Plan& plan) {
   constexpr double least = 1e-3;
@@ -42,7 +39,7 @@ std::string short_edge(const Plan& plan) {
     if (length >= least * size) continue;
     return fmt::format("the edge {} from {} to {} is {:.3g} m long, less than a thousandth of the plan ({:.3g} m); "
                        "leave one of its ends out",
-                       names[k], place_text(ring[k]), place_text(next), length, size);
+                       names[k], base::place_text(ring[k]), base::place_text(next), length, size);
   }
   return {};
 }
@@ -58,12 +55,12 @@ std::string ring_fault(const std::vector<Vec2>& ring, const std::string& side) {
     const std::size_t next = (k + 1) % n;
     if ((ring[next] - ring[k]).norm() > nothing * around) continue;
     return fmt::format("the {} e{} has no length: the points {} and {} are the same, {}; leave one out", side, k + 1,
-                       k + 1, next + 1, place_text(ring[k]));
+                       k + 1, next + 1, base::place_text(ring[k]));
   }
   if (const auto sides = crossing_sides(ring)) {
     const auto [a, b] = *sides;
     return fmt::format("the outline crosses or touches itself: its {0}s e{1} from {2} and e{3} from {4} meet", side,
-                       a + 1, place_text(ring[a]), b + 1, place_text(ring[b]));
+                       a + 1, base::place_text(ring[a]), b + 1, base::place_text(ring[b]));
   }
   // an equilateral triangle has area / perimeter^2 = 0.048
   const double inside = std::abs(signed_area(ring));

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 
 namespace pneuma::geometry {
 
@@ -111,9 +112,8 @@ std::vector<std::array<Index, 3>> triangulate(std::span<const Vec2> ring) {
   if (const auto sides = crossing_sides(ring)) {
     const Vec2& a = ring[sides->first];
     const Vec2& b = ring[sides->second];
-    throw base::GeometryError(fmt::format(
-        "the polygon crosses or touches itself: its sides from ({:.6g}, {:.6g}) and from ({:.6g}, {:.6g}) meet", a.x(),
-        a.y(), b.x(), b.y()));
+    throw base::GeometryError(fmt::format("the polygon crosses or touches itself: its sides from {} and from {} meet",
+                                          base::place_text(a), base::place_text(b)));
   }
   std::vector<Index> left(ring.size()); // points not yet cut off, counterclockwise
   std::iota(left.begin(), left.end(), 0);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 
 namespace pneuma::geometry::flattening {
 
@@ -37,10 +38,9 @@ void scale_and_centre(const Triangulation& surface, std::vector<Vec2>& plane) {
     wanted += (x(j) - x(i)).cross(x(k) - x(i)).norm() / 2;
     const double flat = turn(p(i), p(j), p(k)) / 2;
     if (!(flat > 0)) {
-      throw base::GeometryError(
-          fmt::format("flattening turned a triangle over at ({:.6g}, {:.6g}, {:.6g}) m: the strip "
-                      "is too strongly curved; take more strips",
-                      x(i).x(), x(i).y(), x(i).z()));
+      throw base::GeometryError(fmt::format("flattening turned a triangle over at {} m: the strip "
+                                            "is too strongly curved; take more strips",
+                                            base::place_text(x(i))));
     }
     area += flat;
     moment += flat / 3 * (p(i) + p(j) + p(k));

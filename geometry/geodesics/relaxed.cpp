@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/box_grid.h"
 #include "geometry/geodesics/geodesics.h"
 #include "geometry/polygon.h"
@@ -155,8 +156,7 @@ void connect(const Surface& surface, Sleeve& sleeve, Index to, std::vector<Index
   }
   if (reached_by[at(to)] == none) {
     const Vec3& p = surface.point(surface.corners(to)[0]);
-    throw base::GeometryError(
-        fmt::format("the surface is torn before ({:.6g}, {:.6g}, {:.6g}): no line leads there", p.x(), p.y(), p.z()));
+    throw base::GeometryError(fmt::format("the surface is torn before {}: no line leads there", base::place_text(p)));
   }
   const auto end = static_cast<std::ptrdiff_t>(sleeve.size());
   for (Index t = to; t != from; t = reached_by[at(t)]) sleeve.push_back(t);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/geodesics/geodesics.h"
 
 namespace pneuma::geometry::geodesics {
@@ -34,8 +35,8 @@ Path shortest_path(const Triangulation& surface, Index from, Index to) {
   for (const auto& [a, b, c] : surface.triangles) {
     if (mesh.add_face(vertex(a), vertex(b), vertex(c)) == Surface::null_face()) {
       const Vec3& p = surface.points[static_cast<std::size_t>(a)];
-      throw base::GeometryError(fmt::format(
-          "the surface is no manifold, or not oriented alike, at ({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()));
+      throw base::GeometryError(
+          fmt::format("the surface is no manifold, or not oriented alike, at {}", base::place_text(p)));
     }
   }
   const auto end = [&](Index i) {
@@ -53,8 +54,7 @@ Path shortest_path(const Triangulation& surface, Index from, Index to) {
     const Vec3& a = surface.points[static_cast<std::size_t>(from)];
     const Vec3& b = surface.points[static_cast<std::size_t>(to)];
     throw base::GeometryError(
-        fmt::format("no path on the surface leads from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", a.x(),
-                    a.y(), a.z(), b.x(), b.y(), b.z()));
+        fmt::format("no path on the surface leads from {} to {}", base::place_text(a), base::place_text(b)));
   }
   std::transform(points.begin(), points.end(), std::back_inserter(path.points),
                  [](const Kernel::Point_3& p) { return Vec3(p.x(), p.y(), p.z()); });

@@ -12,6 +12,7 @@
 #include <gmsh.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/polygon.h"
 
 // gmsh sets an option of windows that are never opened, and FLTK then writes its settings to the user's home and to
@@ -64,9 +65,8 @@ void check_simple(std::span<const Vec2> ring) {
   if (const auto sides = crossing_sides(ring)) {
     const Vec2& a = ring[sides->first];
     const Vec2& b = ring[sides->second];
-    throw base::GeometryError(
-        fmt::format("the outline crosses or touches itself: its sides near ({:.6g}, {:.6g}) and ({:.6g}, {:.6g}) meet",
-                    a.x(), a.y(), b.x(), b.y()));
+    throw base::GeometryError(fmt::format("the outline crosses or touches itself: its sides near {} and {} meet",
+                                          base::place_text(a), base::place_text(b)));
   }
 }
 
@@ -160,8 +160,8 @@ Filling fill(std::span<const Vec2> ring, bool quadrilaterals) {
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  throw base::GeometryError(fmt::format("gmsh found no mesh of the polygon of {} points around ({:.6g}, {:.6g}): {}",
-                                        ring.size(), (low + high).x() / 2, (low + high).y() / 2, reason));
+  throw base::GeometryError(fmt::format("gmsh found no mesh of the polygon of {} points around {}: {}", ring.size(),
+                                        base::place_text(Vec2((low + high) / 2)), reason));
 }
 
 } // namespace pneuma::geometry::meshing

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/box_grid.h"
 #include "geometry/mesh_check.h"
 #include "geometry/meshing/filled.h"
@@ -28,10 +29,6 @@ constexpr double narrowest = 1.5; // elements: more than that are two when round
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
-}
-
-std::string text(const Vec2& place) {
-  return fmt::format("({:.6g}, {:.6g})", place.x(), place.y());
 }
 
 // The stations of a foil in plan, before its strips are filled: those of the rim first, then those of each line.
@@ -87,7 +84,7 @@ void check_line(const Plan& plan, const CuttingLine& line, std::size_t number, d
     if (!(away <= size / 3)) {
       throw GeometryError(
           fmt::format("line {} ends at {}, {:.3g} m from its position on the rim: it must end on the rim", number + 1,
-                      text(point), away));
+                      base::place_text(point), away));
     }
   }
 }
@@ -108,10 +105,10 @@ Outline outline_of(const Plan& plan, const Cut& foil, const RimStations& rim, st
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const Track track(foil.surface->chart, lines[l].plan, size / 8);
     if (track.length() < narrowest * size) {
-      throw GeometryError(
-          fmt::format("line {} at {} is {:.3g} m long, too short for elements of {:.3g} m: at most {:.3g} "
-                      "m would do",
-                      l + 1, text(lines[l].plan.front()), track.length(), size, track.length() / narrowest));
+      throw GeometryError(fmt::format(
+          "line {} at {} is {:.3g} m long, too short for elements of {:.3g} m: at most {:.3g} "
+          "m would do",
+          l + 1, base::place_text(lines[l].plan.front()), track.length(), size, track.length() / narrowest));
     }
     const int sides = sides_in(track.length(), size, even);
     auto& stations = outline.lines.emplace_back();
@@ -150,7 +147,7 @@ void check_width(const Plan& plan, const Outline& outline, double size) {
       if (distance >= limit) continue;
       throw GeometryError(fmt::format("line {} comes as near as {:.3g} m to the rim at {}, too near for elements of "
                                       "{:.3g} m: move the line, or take smaller elements",
-                                      l + 1, distance, text(place), size));
+                                      l + 1, distance, base::place_text(place), size));
     }
   }
   if (stations.empty()) return;
@@ -163,8 +160,8 @@ void check_width(const Plan& plan, const Outline& outline, double size) {
       throw GeometryError(fmt::format(
           "lines {} and {} come as near as {:.3g} m to each other at {}: the strip between them is too narrow for two "
           "elements of {:.3g} m; fewer strips, or elements of at most {:.3g} m, would do",
-          std::min(station.line, other.line) + 1, std::max(station.line, other.line) + 1, distance, text(station.place),
-          size, distance / narrowest));
+          std::min(station.line, other.line) + 1, std::max(station.line, other.line) + 1, distance,
+          base::place_text(station.place), size, distance / narrowest));
     }
   }
 }
@@ -268,7 +265,7 @@ void check_size(const Division& division, const Outline& outline, double size, i
     if (corners == 4 && face.ring.size() < 6) {
       throw GeometryError(fmt::format("the strip around {} is too small for quadrilaterals of {:.3g} m: move the line, "
                                       "or take smaller elements",
-                                      text(face.centre), size));
+                                      base::place_text(face.centre), size));
     }
     for (const std::vector<Index>& run : face.runs) {
       double width = 0;
@@ -279,7 +276,7 @@ void check_size(const Division& division, const Outline& outline, double size, i
       const Vec2& place = outline.points[at(face.ring[at(run.front())])];
       throw GeometryError(fmt::format("a strip is {:.3g} m wide at the rim behind {}, too narrow for two elements of "
                                       "{:.3g} m: fewer strips, or elements of at most {:.3g} m, would do",
-                                      width, text(place), size, width / narrowest));
+                                      width, base::place_text(place), size, width / narrowest));
     }
   }
 }
@@ -304,8 +301,8 @@ Division divide(const Outline& outline, const RimStations& rim, std::span<const 
   division.beside.resize(outline.lines.size());
   division.faces = faces_of(outline, stations, ends, division.beside);
   if (division.faces.size() != outline.lines.size() + 1) {
-    throw GeometryError(
-        fmt::format("the lines from {} on cross each other", text(outline.points[at(ends.front().station)])));
+    throw GeometryError(fmt::format("the lines from {} on cross each other",
+                                    base::place_text(outline.points[at(ends.front().station)])));
   }
   for (Face& face : division.faces) {
     face.centre = centre_of(places_of(face, outline));

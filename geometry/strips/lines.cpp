@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/geodesics/geodesics.h"
 #include "geometry/meshing/fill.h"
 #include "geometry/polygon.h"
@@ -25,10 +26,6 @@ using base::GeometryError;
 constexpr double most_triangles = 1500; // of the coarse copy: the exact search takes some hundredths of a second
 
 constexpr double longest = 1e-5; // by how much a line may be longer than the shortest on the triangles, relative
-
-std::string text(const Vec2& place) {
-  return fmt::format("({:.6g}, {:.6g})", place.x(), place.y());
-}
 
 double mean_side(const Mesh& mesh, const Block& block, std::span<const Vec3> positions) {
   const auto corners = static_cast<std::size_t>(corners_per_element(mesh.element));
@@ -207,7 +204,7 @@ void check_inside(const Surface& surface, std::span<const Vec2> line) {
   double whole = 0;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) whole += (line[k + 1] - line[k]).norm();
   if (!(whole > surface.size))
-    throw GeometryError(fmt::format("the line at {} is shorter than an element", text(line[0])));
+    throw GeometryError(fmt::format("the line at {} is shorter than an element", base::place_text(line[0])));
   // calls visit(place, length to the nearer end)
   const auto each_sample = [&](auto&& visit) {
     double run = 0;
@@ -225,7 +222,8 @@ void check_inside(const Surface& surface, std::span<const Vec2> line) {
   each_sample([&](const Vec2& place, double) {
     if (inside(surface.plan, place, 1e-9 * whole)) return;
     throw GeometryError(fmt::format("the line from {} to {} leaves the plan at {}: move its ends, or divide the plan",
-                                    text(line.front()), text(line.back()), text(place)));
+                                    base::place_text(line.front()), base::place_text(line.back()),
+                                    base::place_text(place)));
   });
   const double free = std::min(surface.size, whole / 3); // length at the ends
   each_sample([&](const Vec2& place, double length) {
@@ -233,7 +231,8 @@ void check_inside(const Surface& surface, std::span<const Vec2> line) {
     if (length <= free || (rim - place).norm() >= 0.05 * free) return;
     throw GeometryError(fmt::format("the line from {} to {} runs along the rim at {}: a line must join two different "
                                     "parts of the rim through the inside",
-                                    text(line.front()), text(line.back()), text(place)));
+                                    base::place_text(line.front()), base::place_text(line.back()),
+                                    base::place_text(place)));
   });
 }
 
@@ -246,9 +245,9 @@ Surface prepare(const Plan& plan, const Mesh& mesh, const Block& block, std::spa
     for (const Index i : edge.nodes) {
       const Vec3& x = positions[static_cast<std::size_t>(i)];
       if (std::abs(x.z()) > flat) {
-        throw GeometryError(fmt::format("the rim leaves the plane z = 0 at ({:.6g}, {:.6g}, {:.6g}): only plane rims "
+        throw GeometryError(fmt::format("the rim leaves the plane z = 0 at {}: only plane rims "
                                         "can be cut",
-                                        x.x(), x.y(), x.z()));
+                                        base::place_text(x)));
       }
     }
   }
@@ -262,7 +261,8 @@ CuttingLine geodesic_line(const Surface& surface, double from, double to) {
   const Vec2 start = rim_point(surface.plan, from);
   const Vec2 end = rim_point(surface.plan, to);
   if (!((end - start).norm() > surface.size))
-    throw GeometryError(fmt::format("the ends of the line at {} are closer than an element's size", text(start)));
+    throw GeometryError(
+        fmt::format("the ends of the line at {} are closer than an element's size", base::place_text(start)));
   const WithEnds coarse = with_ends(surface.coarse, start, end);
   const geodesics::Path guess = geodesics::shortest_path(coarse.surface, coarse.from, coarse.to);
   const WithEnds fine = with_ends(surface.fine, start, end);
@@ -311,7 +311,7 @@ CuttingLine given_line(const Surface& surface, std::span<const Vec2> points) {
       throw GeometryError(
           fmt::format("the line's end {} lies {:.3g} m from the rim, farther than a tenth of an element "
                       "({:.3g} m): end it at {}",
-                      text(point), away, surface.size / 10, text(rim)));
+                      base::place_text(point), away, surface.size / 10, base::place_text(rim)));
     }
     point = rim;
   };
@@ -330,9 +330,10 @@ std::string crossing(std::span<const CuttingLine> lines) {
   const auto found = crossing_lines(plans);
   if (!found) return {};
   if (found->first == found->second) {
-    return fmt::format("line {} crosses itself near {}", found->first + 1, text(found->at));
+    return fmt::format("line {} crosses itself near {}", found->first + 1, base::place_text(found->at));
   }
-  return fmt::format("lines {} and {} cross or touch near {}", found->first + 1, found->second + 1, text(found->at));
+  return fmt::format("lines {} and {} cross or touch near {}", found->first + 1, found->second + 1,
+                     base::place_text(found->at));
 }
 
 } // namespace pneuma::geometry::strips

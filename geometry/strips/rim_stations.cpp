@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/rim.h"
 
 namespace pneuma::geometry::strips {
@@ -56,9 +57,9 @@ std::vector<std::vector<RimStations::Ends>> merge_ends(const Plan& plan, std::sp
       if (std::ranges::count(taken, number) > 0) {
         const Vec2 place = rim_point(plan, position);
         throw base::GeometryError(
-            fmt::format("two lines of one foil end at ({:.6g}, {:.6g}) m, or within a third of the mesh size {:.3g} m: "
+            fmt::format("two lines of one foil end at {} m, or within a third of the mesh size {:.3g} m: "
                         "move one of them, take fewer strips, or smaller elements",
-                        place.x(), place.y(), size));
+                        base::place_text(place), size));
       }
       taken.push_back(number);
       return static_cast<Index>(number);

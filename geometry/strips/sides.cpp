@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 
 namespace pneuma::geometry::strips {
 
@@ -67,9 +68,9 @@ std::map<Index, Piece> boundary_of(const Mesh& mesh, const Block& block, std::sp
   for (const auto& [ends, piece] : open) {
     if (!boundary.emplace(piece.from, piece).second) {
       const Vec3& x = mesh.nodes[static_cast<std::size_t>(piece.from)];
-      throw base::GeometryError(fmt::format("strip {} of `{}` touches itself at ({:.6g}, {:.6g}, {:.6g}) m: move the "
+      throw base::GeometryError(fmt::format("strip {} of `{}` touches itself at {} m: move the "
                                             "cutting lines apart",
-                                            strip + 1, block.name, x.x(), x.y(), x.z()));
+                                            strip + 1, block.name, base::place_text(x)));
     }
   }
   return boundary;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/base/place.h"
 #include "geometry/plan_region.h"
 #include "geometry/rim.h"
 #include "pipeline/workflow/limits.h"
@@ -25,10 +26,6 @@ using schema::below;
 double slack_of(const Plan& plan) {
   const PlanRectangle box = geometry::extent(plan);
   return 1e-6 * (box.high - box.low).norm();
-}
-
-std::string place_text(const Vec2& point) {
-  return fmt::format("({:.10g}, {:.10g}) m", point.x(), point.y());
 }
 
 // `range` of a region along an axis, held against that of the plan; true: it lies within.
@@ -94,13 +91,13 @@ void check_curve(Reader& reader, const Plan& plan, const At<std::vector<Vec2>>& 
     const Vec2 rim = geometry::rim_point(plan, geometry::rim_position(plan, end));
     if ((rim - end).norm() <= element / 10) continue; // put on it when the foil is cut
     reader.fail(at(k), fmt::format("a curve goes from rim to rim, and this end {} lies {:.3g} m from it: end it at {}",
-                                   place_text(end), (rim - end).norm(), place_text(rim)));
+                                   base::place_text(end) + " m", (rim - end).norm(), base::place_text(rim) + " m"));
     return;
   }
   for (std::size_t k = 1; k + 1 < curve->size(); ++k) {
     if (geometry::inside(plan, curve.value[k], slack)) continue;
-    return reader.fail(at(k),
-                       fmt::format("the point {} of the curve lies beside the plan", place_text(curve.value[k])));
+    return reader.fail(
+        at(k), fmt::format("the point {} of the curve lies beside the plan", base::place_text(curve.value[k]) + " m"));
   }
 }
 
@@ -175,7 +172,7 @@ void check_in_plan(Reader& reader, const Plan& plan, const At<PatternSettings>& 
                             crossing->first == crossing->second
                                 ? "crosses itself"
                                 : fmt::format("crosses or touches curve {}", crossing->first + 1),
-                            place_text(crossing->at)));
+                            base::place_text(crossing->at) + " m"));
   }
 }
 
@@ -188,7 +185,7 @@ void check_in_plan(Reader& reader, const Plan& plan, const At<PathSettings>& pat
   const bool on_rim = (geometry::rim_point(plan, geometry::rim_position(plan, at)) - at).norm() <= slack;
   if (!on_rim && geometry::inside(plan, at, slack)) return;
   reader.fail(At<DisplacementControl>{*displacement, control.path}[&DisplacementControl::at].path,
-              fmt::format("the place {} lies {}: take one inside", place_text(at),
+              fmt::format("the place {} lies {}: take one inside", base::place_text(at) + " m",
                           on_rim ? "on the clamped edge, which does not move" : "beside the plan"));
 }
 

@@ -11,6 +11,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/parallel.h"
+#include "geometry/base/place.h"
 #include "geometry/volume.h"
 #include "solver/element/film.h"
 
@@ -58,8 +59,7 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
           if (owner[coordinate] >= 0) {
             const Vec3& x = mesh.nodes[static_cast<std::size_t>(node)];
             throw base::InputError(
-                fmt::format("two foils share a free node at ({:.6g}, {:.6g}, {:.6g}) m: every edge must be clamped",
-                            x.x(), x.y(), x.z()));
+                fmt::format("two foils share a free node at {} m: every edge must be clamped", base::place_text(x)));
           }
           owner[coordinate] = static_cast<Index>(b);
           unknown[coordinate] = static_cast<Index>(foil.coordinate.size());
@@ -108,8 +108,8 @@ System::System(Model model, int threads) : model_(std::move(model)), threads_(th
     if (model_.move[k] == 0) continue;
     if (model_.fixed[static_cast<std::size_t>(k)] == 0 || in_base[static_cast<std::size_t>(k)] != 0) {
       const Vec3& x = mesh.nodes[static_cast<std::size_t>(k / 3)];
-      throw base::InputError(fmt::format(
-          "the node at ({:.6g}, {:.6g}, {:.6g}) m cannot be moved: only held nodes of foils are", x.x(), x.y(), x.z()));
+      throw base::InputError(
+          fmt::format("the node at {} m cannot be moved: only held nodes of foils are", base::place_text(x)));
     }
     moving_.push_back(static_cast<Index>(k));
   }
@@ -420,7 +420,7 @@ std::string System::why_failed(std::size_t foil, const Configuration& configurat
   }
   const Vec3& e = failed.strain;
   const std::string strain = fmt::format("({:.4g}, {:.4g}, {:.4g})", e[0], e[1], 0.5 * e[2]);
-  const std::string place = fmt::format("({:.4g}, {:.4g}, {:.4g}) m", middle.x(), middle.y(), middle.z());
+  const std::string place = base::place_text(middle) + " m";
   if (failed.status != material::Status::outside_data) {
     return fmt::format("the material of foil `{}` has no state at strain {} at {}", block.name, strain, place);
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/shape_functions.h"
 
 namespace pneuma::solver::element {
@@ -32,8 +33,8 @@ Reference make_reference(ElementType element, StressRule rule, std::span<const d
         if (!(jacobian > 1e-12 * g.squaredNorm()) || along.norm() < 1e-6 * warp.norm()) {
           throw base::GeometryError(
               fmt::format("element {} of the reference configuration is degenerate, or the warp direction is normal to "
-                          "it, at ({:.6g}, {:.6g}, {:.6g}) m",
-                          e, at.x(), at.y(), at.z()));
+                          "it, at {} m",
+                          e, base::place_text(at)));
         }
         Eigen::Matrix<double, 3, 2> frame;
         frame.col(0) = along.normalized();

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/base/place.h"
 #include "geometry/volume.h"
 #include "solver/element/film.h"
 #include "solver/linear/cholesky.h"
@@ -220,7 +221,7 @@ Form find_form(const geometry::Mesh& mesh, const std::vector<std::uint8_t>& fixe
   const auto collapsed = [&](const std::vector<Vec3>& now) -> std::optional<std::string> {
     const auto [ratio, at] = problem.smallest_area_ratio(start, now);
     if (ratio > collapsed_area) return std::nullopt;
-    return fmt::format("the surface collapses at ({:.4g}, {:.4g}, {:.4g}) m", at.x(), at.y(), at.z());
+    return fmt::format("the surface collapses at {} m", base::place_text(at));
   };
   const auto measure = [&](const Forces& f, const std::vector<Vec3>& directors) {
     const double scale = target.tension * std::sqrt(f.area);

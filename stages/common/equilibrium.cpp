@@ -9,6 +9,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "geometry/base/place.h"
 #include "geometry/gap.h"
 #include "geometry/surface.h"
 #include "pipeline/state/state_file.h"
@@ -112,7 +113,7 @@ private:
     const auto found = contact_check_.find(c.positions);
     if (!found) return "";
     return fmt::format("contact at load factor {:.4g} at {} m between `{}` and `{}`", c.load_factor,
-                       place_text(start_, found->gap.at), found->upper, found->lower);
+                       base::place_text(found->gap.at), found->upper, found->lower);
   }
 
   path::PathResult follow(assembly::Configuration& c) {

@@ -10,6 +10,7 @@
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "geometry/base/place.h"
 #include "pipeline/digest/digest.h"
 #include "pipeline/state/state_file.h"
 #include "pipeline/yaml/node.h"
@@ -147,6 +148,7 @@ Start read_start(const char* kind, int argc, char** argv) {
   start.settings = pipeline::workflow::effective_settings(start.workflow, start.stage());
   start.frame = geometry::LocalFrame(start.workflow.cushion.plan);
   start.workflow = to_local(std::move(start.workflow), start.frame);
+  base::tell_places_from(origin_of(start));
   check_laws(start.workflow.materials, start.workflow.site.temperature);
   if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
   if (needs_input && !start.arguments.in.empty()) read_input(start);
@@ -171,15 +173,7 @@ pipeline::state::Provenance provenance(const Start& start) {
 int stage_main(const char* kind, void (*body)(const Start&), int argc, char** argv) {
   return base::guarded_main(fmt::format("pneuma-{}", kind).c_str(), [&] {
     const Start start = read_start(kind, argc, argv);
-    try {
-      body(start);
-    } catch (const base::GeometryError& error) {
-      const Vec3 origin = origin_of(start);
-      if (origin.isZero(0)) throw;
-      throw base::GeometryError(
-          fmt::format("{}\n(places are told from the plan's centre, which lies at ({:.3f}, {:.3f}) m)", error.what(),
-                      origin.x(), origin.y()));
-    }
+    body(start);
     return 0;
   });
 }
@@ -187,14 +181,6 @@ int stage_main(const char* kind, void (*body)(const Start&), int argc, char** ar
 Vec3 origin_of(const Start& start) {
   const base::Vec2 origin = start.frame.origin();
   return {origin.x(), origin.y(), 0};
-}
-
-std::string place_text(const Start& start, const Vec3& local) {
-  const Vec3 origin = origin_of(start);
-  const auto text = [](double offset, double value) {
-    return offset == 0 ? fmt::format("{:.4g}", value) : fmt::format("{:.3f}", offset + value);
-  };
-  return fmt::format("({}, {}, {})", text(origin.x(), local.x()), text(origin.y(), local.y()), text(0, local.z()));
 }
 
 std::string number(double value) {

@@ -49,15 +49,11 @@ struct Start {
 // kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
 Start read_start(const char* kind, int argc, char** argv);
 
-// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code. Places in
-// errors of shapes are those of the state: where these differ from the user's, that is said.
+// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code.
 int stage_main(const char* kind, void (*body)(const Start& start), int argc, char** argv);
 
 // Where the state's coordinates begin, in the user's, m.
 Vec3 origin_of(const Start& start);
-
-// A place of the state in the user's coordinates, for messages: "(1.5, 2, 0.3)", to a millimetre or four digits.
-std::string place_text(const Start& start, const Vec3& local);
 
 // Provenance of the state that this stage writes, all but its verdict.
 pipeline::state::Provenance provenance(const Start& start);

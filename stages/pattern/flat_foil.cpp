@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
+#include "geometry/base/place.h"
 #include "geometry/flattening/parameterization.h"
 #include "geometry/flattening/rotation.h"
 #include "geometry/strips/strip_surface.h"
@@ -55,9 +56,9 @@ void check_unfolded(const flattening::FlatNodes& nodes, const flattening::Proble
       const Vec2 v = points[at(piece.nodes[at(k)])] - a;
       if (u.x() * v.y() - u.y() * v.x() > 0) continue;
       const Vec3& x = piece.surface.points[at(i)];
-      throw base::GeometryError(fmt::format("laid flat, strip {} folds over at ({:.6g}, {:.6g}, {:.6g}) m: take "
+      throw base::GeometryError(fmt::format("laid flat, strip {} folds over at {} m: take "
                                             "narrower strips or smaller elements",
-                                            strip + 1, x.x(), x.y(), x.z()));
+                                            strip + 1, base::place_text(x)));
     }
   }
 }

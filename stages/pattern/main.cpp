@@ -14,6 +14,7 @@
 #include "stages/common/equilibrium.h"
 #include "stages/pattern/layout.h"
 #include "stages/pattern/report.h"
+#include "stages/pattern/strip_drawing.h"
 
 namespace pneuma::stages::pattern {
 
@@ -193,10 +194,13 @@ Fabrication draw(const common::Start& start, const workflow::PatternSettings& se
     sheets.push_back({std::move(strip), quality[sheets.size()].distortion});
   }
   const workflow::Roll roll = settings.roll_or_usual();
-  return at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
+  Fabrication made = at_place(common::place(start.workflow, "stages." + start.stage().id + ".roll.width"), [&] {
     return fabricate(welded.state.mesh.blocks[b].name, sheets, allowances_of(settings),
                      {roll.width, roll.selvedge, RollSheet{}.gap, !settings.roll});
   });
+  const base::Vec2 centre = start.frame.origin();
+  if (!centre.isZero(0)) draw_plan_centre(centre, made.roll_width, made.drawing);
+  return made;
 }
 
 void run(const common::Start& start) {

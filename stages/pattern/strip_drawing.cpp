@@ -312,4 +312,13 @@ void draw_roll(double length, double width, double selvedge, Drawing& drawing) {
   drawing.texts.push_back({"DIM", {0, width + letter}, letter, 0, fmt::format("{}: {}", drawing.title, size)});
 }
 
+void draw_plan_centre(const Vec2& centre, double width, Drawing& drawing) {
+  const double letter = std::min(largest_letter, width / 20) / 2; // clear of the line above, which is longer
+  drawing.texts.push_back({"DIM",
+                           {0, width + letter / 2},
+                           letter,
+                           0,
+                           fmt::format("PLAN CENTRE AT {:.3f}, {:.3f} m", centre.x(), centre.y())});
+}
+
 } // namespace pneuma::stages::pattern

@@ -20,4 +20,7 @@ void draw_strip(const geometry::fabrication::FlatStrip& flat, const geometry::fa
 // Adds the part of the roll that is used, with its selvedges and its size; m.
 void draw_roll(double length, double width, double selvedge, pipeline::drawing::Drawing& drawing);
 
+// Says above a roll of this width where in the user's coordinates the plan has its centre, m.
+void draw_plan_centre(const base::Vec2& centre, double width, pipeline::drawing::Drawing& drawing);
+
 } // namespace pneuma::stages::pattern

@@ -436,7 +436,8 @@ TEST(PlanMesh, RefusesPolygonsThatAreNoRegionWithThePlace) {
   EXPECT_THAT(fault({{0, 0}, {1, 0}, {std::nan(""), 1}}), HasSubstr("not finite"));
   EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 0}, {1, 2}}),
               HasSubstr("the edge e2 has no length: the points 2 and 3 are the same, (1, 0)"));
-  EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 2}, {0, 0}}), HasSubstr("the edge e4 has no length: the points 4 and 1 are the same"));
+  EXPECT_THAT(fault({{0, 0}, {1, 0}, {1, 2}, {0, 0}}),
+              HasSubstr("the edge e4 has no length: the points 4 and 1 are the same"));
   EXPECT_THAT(fault({{0, 0}, {2, 0}, {0, 2}, {2, 2}}),
               HasSubstr("crosses or touches itself: its edges e2 from (2, 0) and e4 from (2, 2) meet"));
   EXPECT_THAT(fault({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), HasSubstr("crosses or touches itself"));

@@ -176,4 +176,24 @@ TEST(Polygon, IsMadeUpOfItsTriangles) {
   EXPECT_FALSE(contains(comb, {2.4, 1.9}));
 }
 
+// The same area as over a mesh of the plan, whatever the region; what is cut in two sums to the whole.
+TEST(AreaInside, IsThatOfTheMesh) {
+  const Polygon plan{{{0, 0}, {4, 0}, {4, 1}, {2.5, 1}, {2.5, 2}, {0, 2}}};
+  const Mesh mesh = mesh_plan(plan, {ElementType::T3, 0.5, std::nullopt, Pattern::unstructured});
+  PlanPolygon moved = star(1.5, 0.4);
+  for (Vec2& point : moved.points) point += Vec2(2, 1.2);
+  const PlanRegion regions[] = {PlanRectangle{{-1, -1}, {3, 1.5}}, PlanRectangle{{3, 0.5}, {9, 9}}, moved,
+                                PlanRectangle{{3, 1.2}, {4, 2}}};
+  for (const PlanRegion& region : regions) {
+    const double meshed =
+        plan_area(mesh, mesh.blocks[0], mesh.nodes, region_quadrature(mesh, mesh.blocks[0], mesh.nodes, region));
+    EXPECT_NEAR(area_inside(plan, region), meshed, 1e-12);
+  }
+  EXPECT_NEAR(area_inside(plan, PlanRectangle{{-1, -1}, {1.3, 9}}) +
+                  area_inside(plan, PlanRectangle{{1.3, -1}, {9, 9}}),
+              area(Plan(plan)), 1e-12);
+  EXPECT_NEAR(area_inside(Circle{2}, PlanRectangle{{0, 0}, {2, 2}}), std::numbers::pi, 1.01e-5 * std::numbers::pi);
+  EXPECT_GE(area_inside(Circle{2}, PlanRectangle{{0, 0}, {2, 2}}), std::numbers::pi); // never too little
+}
+
 } // namespace
