@@ -70,31 +70,35 @@ BoxGrid make_grid(const MatX& local, const std::vector<Index>& connectivity) {
 
 } // namespace
 
-GapSearch::GapSearch(const Mesh& mesh, const Block& upper, const Block& lower, const Vec3& up)
-    : element_(mesh.element), upper_(upper.connectivity), lower_(lower.connectivity) {
-  const Vec3 vertical = up.normalized();
+GapSearch::GapSearch(const Mesh& mesh, const Block& upper, const Block& lower, const Vec3& normal)
+    : element_(mesh.element), upper_{upper.connectivity, samples_of(mesh, upper, mesh.element_count(lower))},
+      lower_{lower.connectivity, samples_of(mesh, lower, mesh.element_count(upper))} {
+  const Vec3 vertical = normal.normalized();
   const Vec3 first = vertical.unitOrthogonal();
   frame_.row(0) = first;
   frame_.row(1) = vertical.cross(first);
   frame_.row(2) = vertical;
+}
 
+std::vector<GapSearch::Sample> GapSearch::samples_of(const Mesh& mesh, const Block& block, Index others) {
+  std::vector<Sample> samples;
   std::vector<bool> done(mesh.nodes.size(), false); // nodes already sampled, and those on edges
   for (const Edge& edge : mesh.edges) {
     for (const Index i : edge.nodes) done[static_cast<std::size_t>(i)] = true;
   }
-  const bool triangle = corners_per_element(element_) == 3;
-  const Index others = mesh.element_count(lower);
-  for (Index e = 0; e < mesh.element_count(upper); ++e) {
+  const bool triangle = corners_per_element(mesh.element) == 3;
+  for (Index e = 0; e < mesh.element_count(block); ++e) {
     const Index hint = std::min(e, others - 1); // stacked blocks are copies: the same element is the likeliest
-    const auto nodes = mesh.element_nodes(upper, e);
+    const auto nodes = mesh.element_nodes(block, e);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const auto i = static_cast<std::size_t>(nodes[k]);
       const Place place = triangle ? triangle_nodes[k % 6] : square_nodes[k];
-      if (!done[i]) samples_.push_back({e, place.xi, place.eta, nodes[k], hint});
+      if (!done[i]) samples.push_back({e, place.xi, place.eta, nodes[k], hint});
       done[i] = true;
     }
-    for (const Place& place : inside_of(element_)) samples_.push_back({e, place.xi, place.eta, -1, hint});
+    for (const Place& place : inside_of(mesh.element)) samples.push_back({e, place.xi, place.eta, -1, hint});
   }
+  return samples;
 }
 
 Gap GapSearch::smallest(std::span<const Vec3> positions) {
@@ -106,40 +110,47 @@ Gap GapSearch::search(std::span<const Vec3> positions) {
   local_.resize(3, static_cast<Eigen::Index>(positions.size()));
   for (std::size_t i = 0; i < positions.size(); ++i)
     local_.col(static_cast<Eigen::Index>(i)).noalias() = frame_ * positions[i];
-
   Gap gap;
+  search_from<E>(upper_, lower_, 1, gap);
+  search_from<E>(lower_, upper_, -1, gap);
+  return gap;
+}
+
+// `sign`: 1 from the upper block down, -1 from the lower one up.
+template <ElementType E>
+void GapSearch::search_from(Side& from, const Side& other, double sign, Gap& gap) {
   std::optional<BoxGrid> grid; // made when a point has left its element
-  for (Sample& sample : samples_) {
+  for (Sample& sample : from.samples) {
     Vec3 point;
     if (sample.node >= 0) {
       point = local_.col(sample.node);
     } else {
-      point = gather<E>(local_, upper_, sample.element) * shape_functions<E>(sample.xi, sample.eta).value;
+      point = gather<E>(local_, from.connectivity, sample.element) * shape_functions<E>(sample.xi, sample.eta).value;
     }
     const Vec2 at = point.head<2>();
-    std::optional<PlanPlace> below = place_in_plan<E>(gather<E>(local_, lower_, sample.hint), at);
-    if (!below) {
-      if (!grid) grid = make_grid<E>(local_, lower_);
+    std::optional<PlanPlace> opposite = place_in_plan<E>(gather<E>(local_, other.connectivity, sample.hint), at);
+    if (!opposite) {
+      if (!grid) grid = make_grid<E>(local_, other.connectivity);
       for (const Index e : grid->at(at)) {
-        below = place_in_plan<E>(gather<E>(local_, lower_, e), at);
-        if (below) {
+        opposite = place_in_plan<E>(gather<E>(local_, other.connectivity, e), at);
+        if (opposite) {
           sample.hint = e;
           break;
         }
       }
     }
-    if (!below) {
+    if (!opposite) {
       ++gap.skipped;
       continue;
     }
     ++gap.located;
-    const double value = point.z() - below->height;
+    const double value = sign * (point.z() - opposite->height);
     if (value < gap.value) {
       gap.value = value;
+      if (sign < 0) point.z() = opposite->height;
       gap.at = frame_.transpose() * point;
     }
   }
-  return gap;
 }
 
 } // namespace pneuma::geometry

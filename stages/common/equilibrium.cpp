@@ -42,11 +42,11 @@ void stop_if_interrupted() {
 // Neighbouring blocks that could touch, and how near they are.
 class ContactCheck {
 public:
-  ContactCheck(const geometry::Mesh& mesh, const Vec3& up) {
+  explicit ContactCheck(const geometry::Mesh& mesh) {
     smallest_allowed_ = -1e-6 * geometry::span_of(mesh.nodes);
     for (std::size_t b = 0; b + 1 < mesh.blocks.size(); ++b) {
       names_.emplace_back(mesh.blocks[b].name, mesh.blocks[b + 1].name);
-      searches_.emplace_back(mesh, mesh.blocks[b], mesh.blocks[b + 1], up);
+      searches_.emplace_back(mesh, mesh.blocks[b], mesh.blocks[b + 1]);
     }
   }
   struct Found {
@@ -82,7 +82,7 @@ public:
   Run(const Start& start, Drive drive)
       : start_(start), drive_(std::move(drive)), begin_(drive_.model.mesh.nodes),
         system_(drive_.model, start.arguments.threads), newton_(system_, newton_options(drive_.path)),
-        history_(*start.outputs), series_(*start.outputs), contact_check_(drive_.model.mesh, start.workflow.site.up) {}
+        history_(*start.outputs), series_(*start.outputs), contact_check_(drive_.model.mesh) {}
 
   // Throws Error with exit code 5, after everything is written, where the path did not reach its end.
   void run() {

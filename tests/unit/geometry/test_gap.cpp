@@ -99,7 +99,7 @@ TEST_P(GapOfEveryElement, IsExactBetweenPlanesThatSlidSideways) {
   }
 }
 
-TEST_P(GapOfEveryElement, IsMeasuredAlongUp) {
+TEST_P(GapOfEveryElement, IsMeasuredAlongTheNormalOfThePlan) {
   const Mesh mesh = cushion(0.5);
   const auto x = shaped(
       mesh, [](double u, double v) { return -0.3 * bubble(u, v); }, [](double, double) { return 0.0; });
@@ -111,6 +111,25 @@ TEST_P(GapOfEveryElement, IsMeasuredAlongUp) {
   EXPECT_NEAR(gap.value, straight.value, 1e-13);
   EXPECT_NEAR(gap.value, -0.3, 0.02);
   EXPECT_LT((gap.at - turn * straight.at).norm(), 1e-12);
+}
+
+// A node of the lower block that sticks out between the upper block's points.
+TEST_P(GapOfEveryElement, IsSeenFromBothBlocks) {
+  Mesh two = mesh_plan(Rectangle{4, 3}, {GetParam(), 0.5, std::nullopt});
+  two.edges.clear();
+  const auto count = two.nodes.size();
+  two.blocks.push_back({"lower", BlockKind::foil, two.blocks[upper].connectivity});
+  for (Index& i : two.blocks[lower].connectivity) i += static_cast<Index>(count);
+  for (std::size_t i = 0; i < count; ++i) two.nodes.push_back(two.nodes[i]);
+  std::size_t spike = count;
+  for (std::size_t i = count; i < two.nodes.size(); ++i) {
+    two.nodes[i] += Vec3(0.17, 0.11, -1);
+    if (two.nodes[i].head<2>().norm() < two.nodes[spike].head<2>().norm()) spike = i;
+  }
+  two.nodes[spike].z() = 0.2;
+  const Gap gap = GapSearch(two, two.blocks[upper], two.blocks[lower]).smallest(two.nodes);
+  EXPECT_NEAR(gap.value, -0.2, 1e-14);
+  EXPECT_LT((gap.at - Vec3(two.nodes[spike].x(), two.nodes[spike].y(), 0)).norm(), 1e-14);
 }
 
 TEST_P(GapOfEveryElement, SkipsPointsThatBulgeBeyondTheRim) {
