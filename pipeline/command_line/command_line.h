@@ -28,12 +28,12 @@ struct Option {
 
 // What a program, or a command of one, takes.
 struct Command {
-  std::string name;                 // as called: "pneuma-picture", or "run" as a command of "pneuma"
-  std::string purpose;              // for --help, one sentence without a full stop
-  std::vector<Option> options;      // not of a program that has commands
-  std::vector<Command> commands;    // one of them is the first word
-  std::function<void()> check = {}; // of options that must go together, after all are set; throws InputError
-  std::string footer = {};          // for --help
+  std::string name;                   // as called: "pneuma-picture", or "run" as a command of "pneuma"
+  std::string purpose;                // for --help, one sentence without a full stop
+  std::vector<Option> options = {};   // not of a program that has commands
+  std::vector<Command> commands = {}; // one of them is the first word
+  std::function<void()> check = {};   // of options that must go together, after all are set; throws InputError
+  std::string footer = {};            // for --help
 };
 
 // Reads the words behind a program's name. Checks the whole line, calls `set` in the order of the declaration, then

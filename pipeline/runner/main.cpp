@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/command_line/command_line.h"
 #include "pipeline/runner/check.h"
 #include "pipeline/runner/process.h"
 #include "pipeline/runner/run.h"
@@ -19,13 +17,14 @@ namespace {
 using base::ExitCode;
 using base::say;
 
-const std::vector<std::string> own_words = {"run", "check", "status", "schema", "keys"};
-const std::vector<std::string> program_words = {"picture", "material"};
-const std::vector<std::string> later_words = {"study", "report", "audit"};
+using command_line::Command;
+using command_line::Option;
+using command_line::Words;
+using schema::is_among;
 
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
+const Words own_words = {"run", "check", "status", "schema", "keys"};
+const Words program_words = {"picture", "material"};
+const Words later_words = {"study", "report", "audit"};
 
 // Reads the file and prints warnings; throws with all errors at once.
 workflow::Workflow read(const std::string& file) {
@@ -33,7 +32,7 @@ workflow::Workflow read(const std::string& file) {
   std::string errors;
   for (const workflow::Problem& problem : result.problems) {
     if (problem.error) {
-      errors += (errors.empty() ? "" : "\n") + to_string(problem);
+      errors += fmt::format("{}{}", errors.empty() ? "" : "\n", to_string(problem));
     } else {
       fmt::print(stderr, "{}\n", to_string(problem));
     }
@@ -56,22 +55,12 @@ void check(const std::string& file) {
                   counted(workflow.cushion.chambers.size(), "chamber")));
 }
 
-// A program of its own beside this one.
-int forward(const std::string& word, const std::vector<std::string>& rest) {
+// Becomes a program of its own beside this one.
+int forward(const std::string& word, const Words& rest) {
   const auto program = runner::program_folder() / ("pneuma-" + word);
   check_program(program);
   runner::become(program, rest);
   return static_cast<int>(ExitCode::bug);
-}
-
-// What no command line library says: the word that was meant.
-void check_word(const std::string& word) {
-  if (contains(later_words, word)) throw base::InputError(fmt::format("`pneuma {}` is not available yet", word));
-  if (word.empty() || word.front() == '-' || contains(own_words, word)) return;
-  std::vector<std::string> known = own_words;
-  known.insert(known.end(), program_words.begin(), program_words.end());
-  throw base::InputError(fmt::format("there is no command `{}`{}; commands: {}; or a workflow file", word,
-                                     schema::suggestion(word, known), schema::joined(known)));
 }
 
 bool is_workflow_file(const std::string& word) {
@@ -80,58 +69,73 @@ bool is_workflow_file(const std::string& word) {
   return path.extension() == ".yaml" || path.extension() == ".yml" || std::filesystem::is_regular_file(path, ignored);
 }
 
+// What the command line asks for.
+struct Asked {
+  std::string file;
+  RunOptions options;
+};
+
+Option with_id(const std::string& name, const std::string& text, const std::function<void(const std::string&)>& set,
+               command_line::Times times = command_line::Times::at_most_once) {
+  return {name, "ID", text,
+          [=](const Words& values) { // an empty one would stand for none
+            if (values[0].empty()) throw base::InputError(fmt::format("{}: the name of the stage is empty", name));
+            set(values[0]);
+          },
+          times};
+}
+
+Command program(Asked& asked) {
+  RunOptions& options = asked.options;
+  const Option file = {"WORKFLOW.yaml", "", "the workflow file", [&](const Words& v) { asked.file = v[0]; },
+                       command_line::Times::once};
+  const Option out = {"--out", "DIR", "folder of the results [out/<name> beside the workflow file]",
+                      [&](const Words& v) { options.out = v[0]; }};
+  const Option only = with_id("--only", "this stage alone, if it is out of date, from its input as that is",
+                              [&](const std::string& id) { options.only = id; });
+  const Option from = with_id("--from", "this stage and all that depends on it, anew; what it needs, if out of date",
+                              [&](const std::string& id) { options.from = id; });
+  const Option force = with_id(
+      "--force", "this stage anew; again for more", [&](const std::string& id) { options.force.push_back(id); },
+      command_line::Times::any);
+  const Option jobs = {"--jobs", "N", "stages side by side, 1 to 1024 [number of cores]",
+                       [&](const Words& v) { options.jobs = command_line::whole_number("--jobs", v[0], 1, 1024); }};
+  const auto exclude = [&] {
+    if (options.only.empty() || options.from.empty()) return;
+    throw base::InputError("--only runs a stage alone, --from all that depends on it too; leave one of them away");
+  };
+  return {"pneuma",
+          "from form to wind for ETFE cushions: runs the stages of a workflow file",
+          {},
+          {{"run", "runs what is out of date, and says why", {file, out, only, from, force, jobs}, {}, exclude},
+           {"check", "finds all errors without running", {file}},
+           {"status", "which stages are fresh, and key results", {file, out}},
+           {"schema", "the JSON schema of workflow files, for editors"},
+           {"keys", "the reference of all keys of a workflow file"},
+           {"picture", "a PNG of a state: pneuma picture STATE.hdf --field NAME --out PICTURE.png"},
+           {"material", "curves of materials: pneuma material MATERIALS.yaml"}},
+          {},
+          "A workflow file as first word means `run`."};
+}
+
 int body(int argc, char** argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && contains(program_words, words.front())) {
-    return forward(words.front(), {words.begin() + 1, words.end()});
-  }
-  if (!words.empty() && !contains(own_words, words.front()) && is_workflow_file(words.front())) {
-    words.insert(words.begin(), "run");
-  }
-  if (!words.empty()) check_word(words.front());
+  Words words(argv + 1, argv + argc);
+  const std::string first = words.empty() ? "" : words.front();
+  if (is_among(first, program_words)) return forward(first, {words.begin() + 1, words.end()});
+  if (is_among(first, later_words)) throw base::InputError(fmt::format("`pneuma {}` is not available yet", first));
+  if (!is_among(first, own_words) && is_workflow_file(first)) words.insert(words.begin(), "run");
 
-  CLI::App app("From form to wind for ETFE cushions: runs the stages of a workflow file.", "pneuma");
-  app.footer("A workflow file as first word means `run`. Also: pneuma picture STATE --field F --out P.png, pneuma "
-             "material M.yaml.");
-  app.set_version_flag("--version", "pneuma " PNEUMA_VERSION);
-  app.require_subcommand(1);
-
-  std::string file, out;
-  runner::RunOptions options;
-  const auto with_file = [&](CLI::App* command) {
-    command->add_option("workflow", file, "the workflow file")->required();
-    return command;
-  };
-  const auto with_out = [&](CLI::App* command) {
-    command->add_option("--out", out, "folder of the results [out/<name> beside the workflow file]");
-    return command;
-  };
-  CLI::App* run = with_out(with_file(app.add_subcommand("run", "run what is out of date, and say why")));
-  auto* only = run->add_option("--only", options.only, "this stage alone");
-  run->add_option("--from", options.from, "this stage and all that depends on it, anew")->excludes(only);
-  run->add_option("--force", options.force, "this stage anew")->take_all();
-  run->add_option("--jobs", options.jobs, "stages side by side [number of cores]")->check(CLI::Range(1, 1024));
-  CLI::App* check_command = with_file(app.add_subcommand("check", "find all errors without running"));
-  CLI::App* status = with_out(with_file(app.add_subcommand("status", "which stages are fresh, and key results")));
-  CLI::App* schema_command = app.add_subcommand("schema", "the JSON schema of workflow files, for editors");
-  CLI::App* keys = app.add_subcommand("keys", "the reference of all keys of a workflow file");
-
-  try {
-    std::reverse(words.begin(), words.end()); // what CLI11 takes
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
-  }
-  options.out = out;
-  if (run->parsed()) {
-    const workflow::Workflow workflow = read(file);
+  Asked asked;
+  const std::optional<std::string> command = command_line::read(program(asked), words);
+  if (command == "run") {
+    const workflow::Workflow workflow = read(asked.file);
     check_by_stages(workflow, MeshCheck::left_out);
-    return runner::run(workflow, options);
+    return runner::run(workflow, asked.options);
   }
-  if (check_command->parsed()) check(file);
-  if (status->parsed()) runner::show_status(read(file), out);
-  if (schema_command->parsed()) fmt::print("{}", workflow::workflow_json_schema());
-  if (keys->parsed()) fmt::print("{}", workflow::workflow_reference());
+  if (command == "check") check(asked.file);
+  if (command == "status") show_status(read(asked.file), asked.options.out);
+  if (command == "schema") fmt::print("{}", workflow::workflow_json_schema());
+  if (command == "keys") fmt::print("{}", workflow::workflow_reference());
   return static_cast<int>(ExitCode::done);
 }
 

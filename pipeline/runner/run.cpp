@@ -113,11 +113,10 @@ private:
   }
 
   void select() {
-    for (const std::string& id : options_.force) job(id).anew = true;
     if (!options_.from.empty()) {
       const Job& first = job(options_.from);
       for (Job& other : jobs_) {
-        other.anew = other.anew || depends_on(other, options_.from);
+        other.anew = depends_on(other, options_.from);
         other.selected = other.anew || depends_on(first, other.stage->id);
       }
     }
@@ -125,6 +124,20 @@ private:
       const Job& one = job(options_.only);
       for (Job& other : jobs_) other.selected = &other == &one;
     }
+    for (const std::string& id : options_.force) force(job(id));
+  }
+
+  void force(Job& one) {
+    one.anew = true;
+    if (one.selected) return;
+    const std::string& id = one.stage->id;
+    throw base::InputError(
+        options_.only.empty()
+            ? fmt::format("--force {0}: --from {1} runs what `{1}` needs, it and what depends on it, and `{0}` is none "
+                          "of them; leave one of the two away",
+                          id, options_.from)
+            : fmt::format("--force {0}: --only {1} runs `{1}` alone, `{0}` would not run; leave one of the two away",
+                          id, options_.only));
   }
 
   // A stage alone takes its input as it is, if it is a finished one.

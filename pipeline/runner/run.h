@@ -19,8 +19,9 @@ struct RunOptions {
 
 std::filesystem::path output_folder(const workflow::Workflow& workflow, const std::filesystem::path& out);
 
-// Runs what is out of date and prints why; returns the exit code. Throws InputError for a stage that does not exist and
-// for a folder in use, StateError for an input that `only` needs and does not find.
+// Runs what is out of date and prints why; returns the exit code. Throws InputError for a stage that does not exist,
+// for options that exclude each other (a forced stage that `only` or `from` leaves out) and for a folder in use,
+// StateError for an input that `only` needs and does not find.
 int run(const workflow::Workflow& workflow, const RunOptions& options);
 
 // Prints which stages are fresh, which are stale and why, and their key results.

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/common/stage.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cstdlib>
-
 #include <fmt/format.h>
-#include <getopt.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
 #include "geometry/base/place.h"
+#include "pipeline/command_line/command_line.h"
 #include "pipeline/digest/digest.h"
 #include "pipeline/state/state_file.h"
 #include "pipeline/yaml/node.h"
@@ -18,66 +14,13 @@
 
 namespace pneuma::stages::common {
 
+namespace command_line = pipeline::command_line;
+
 namespace {
 
-constexpr const char* version = "0.1.0";
-
-} // namespace
-
-Arguments read_arguments(const char* program, bool needs_input, int argc, char** argv) {
-  const std::string usage =
-      fmt::format("usage: {} --config stage.yaml {}--out state.hdf [--threads N] [--check] [--note TEXT]", program,
-                  needs_input ? "--in state.hdf " : "");
-  const option options[] = {{"config", required_argument, nullptr, 'c'},
-                            {"in", required_argument, nullptr, 'i'},
-                            {"out", required_argument, nullptr, 'o'},
-                            {"threads", required_argument, nullptr, 't'},
-                            {"check", no_argument, nullptr, 'k'},
-                            {"note", required_argument, nullptr, 'n'},
-                            {"help", no_argument, nullptr, 'h'},
-                            {"version", no_argument, nullptr, 'v'},
-                            {nullptr, 0, nullptr, 0}};
-  Arguments arguments;
-  opterr = 0;
-  for (int c = 0; (c = getopt_long(argc, argv, "", options, nullptr)) != -1;) {
-    switch (c) {
-    case 'c':
-      arguments.config = optarg;
-      break;
-    case 'i':
-      arguments.in = optarg;
-      break;
-    case 'o':
-      arguments.out = optarg;
-      break;
-    case 't': {
-      const std::string text = optarg;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), arguments.threads);
-      if (error != std::errc() || end != text.data() + text.size() || arguments.threads < 1) {
-        throw base::InputError(fmt::format("--threads must be a whole number from 1, not `{}`\n{}", text, usage));
-      }
-      break;
-    }
-    case 'k':
-      arguments.check = true;
-      break;
-    case 'n':
-      arguments.notes.emplace_back(optarg);
-      break;
-    case 'h':
-      base::say(usage);
-      std::exit(0);
-    case 'v':
-      base::say(fmt::format("{} {}", program, version));
-      std::exit(0);
-    default:
-      throw base::InputError(fmt::format("unknown option or missing value: `{}`\n{}", argv[optind - 1], usage));
-    }
-  }
-  if (optind < argc) throw base::InputError(fmt::format("unexpected argument `{}`\n{}", argv[optind], usage));
-  if (arguments.config.empty()) throw base::InputError("--config is missing\n" + usage);
-  if (arguments.out.empty() && !arguments.check) throw base::InputError("--out is missing\n" + usage);
-  if (needs_input && arguments.in.empty() && !arguments.check) throw base::InputError("--in is missing\n" + usage);
+void check_arguments(const Arguments& arguments, bool needs_input) {
+  if (arguments.out.empty() && !arguments.check) throw base::InputError("--out is missing");
+  if (needs_input && arguments.in.empty() && !arguments.check) throw base::InputError("--in is missing");
   if (!arguments.out.empty() && arguments.out.extension() != ".hdf") {
     throw base::InputError(
         fmt::format("--out must end in .hdf (ParaView opens it by that), not `{}`", arguments.out.string()));
@@ -86,6 +29,36 @@ Arguments read_arguments(const char* program, bool needs_input, int argc, char**
   if (!folder.empty() && !arguments.check && !std::filesystem::is_directory(folder)) {
     throw base::InputError(fmt::format("--out: there is no folder `{}`", folder.string()));
   }
+}
+
+} // namespace
+
+std::optional<Arguments> read_arguments(const std::string& program, const std::string& purpose, bool needs_input,
+                                        int argc, char** argv) {
+  using command_line::Words;
+  Arguments arguments;
+  command_line::Command command = {
+      program,
+      purpose,
+      {{"--config", "stage.yaml", "settings of the stage, as `pneuma run` writes them",
+        [&](const Words& v) { arguments.config = v[0]; }, command_line::Times::once},
+       {"--out", "state.hdf", "state to be written; other results go beside it; needed without --check",
+        [&](const Words& v) { arguments.out = v[0]; }},
+       {"--threads", "N", "for the solution of equations [1]",
+        [&](const Words& v) { arguments.threads = command_line::whole_number("--threads", v[0], 1); }},
+       {"--check", "", "read and check everything, compute and write nothing",
+        [&](const Words&) { arguments.check = true; }},
+       {"--note", "TEXT", "a warning about the input, to stand among those of the stage; again for more",
+        [&](const Words& v) { arguments.notes.push_back(v[0]); }, command_line::Times::any}},
+      {},
+      [&] { check_arguments(arguments, needs_input); },
+      "`pneuma run WORKFLOW.yaml` writes the settings and calls this program."};
+  if (needs_input) {
+    command.options.insert(command.options.begin() + 1,
+                           {"--in", "state.hdf", "state to start from; needed without --check",
+                            [&](const Words& v) { arguments.in = v[0]; }});
+  }
+  if (!command_line::read(command, Words(argv + 1, argv + argc))) return std::nullopt;
   return arguments;
 }
 
@@ -135,11 +108,13 @@ void read_input(Start& start) {
 
 } // namespace
 
-Start read_start(const char* kind, int argc, char** argv) {
+std::optional<Start> read_start(const std::string& kind, const std::string& purpose, int argc, char** argv) {
   Start start;
-  start.program = std::string("pneuma-") + kind;
-  const bool needs_input = std::string(kind) != "mesh";
-  start.arguments = read_arguments(start.program.c_str(), needs_input, argc, argv);
+  start.program = "pneuma-" + kind;
+  const bool needs_input = kind != "mesh";
+  std::optional<Arguments> arguments = read_arguments(start.program, purpose, needs_input, argc, argv);
+  if (!arguments) return std::nullopt;
+  start.arguments = std::move(*arguments);
   start.workflow = pipeline::workflow::read_stage(start.arguments.config);
   if (const pipeline::workflow::StageSettings& stage = start.stage(); stage.run != kind) {
     throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
@@ -161,7 +136,7 @@ Start read_start(const char* kind, int argc, char** argv) {
 
 pipeline::state::Provenance provenance(const Start& start) {
   pipeline::state::Provenance p;
-  p.program = start.program + " " + version;
+  p.program = fmt::format("{} {}", start.program, command_line::version());
   p.stage_kind = start.stage().run;
   p.stage_id = start.stage().id;
   if (!start.arguments.in.empty()) p.inputs["state"] = pipeline::digest::sha256_of_file(start.arguments.in);
@@ -170,10 +145,10 @@ pipeline::state::Provenance provenance(const Start& start) {
   return p;
 }
 
-int stage_main(const char* kind, void (*body)(const Start&), int argc, char** argv) {
+int stage_main(const char* kind, const char* purpose, void (*body)(const Start&), int argc, char** argv) {
   return base::guarded_main(fmt::format("pneuma-{}", kind).c_str(), [&] {
-    const Start start = read_start(kind, argc, argv);
-    body(start);
+    const std::optional<Start> start = read_start(kind, purpose, argc, argv);
+    if (start) body(*start);
     return 0;
   });
 }

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/outline.h"
 #include "pipeline/files/outputs.h"
@@ -20,7 +22,7 @@ using base::VecX;
 using pipeline::state::State;
 using pipeline::workflow::Workflow;
 
-// The command line of every stage: --config stage.yaml [--in a.hdf] --out b.hdf [--threads N] [--check] [--note TEXT].
+// The command line of every stage.
 struct Arguments {
   std::filesystem::path config, in, out;
   int threads = 1;
@@ -28,8 +30,9 @@ struct Arguments {
   std::vector<std::string> notes; // warnings about the input, to stand among those of the stage
 };
 
-// Throws InputError; prints help or version and exits for --help and --version.
-Arguments read_arguments(const char* program, bool needs_input, int argc, char** argv);
+// nullopt: help or version was asked for and is printed. Throws InputError for a wrong line.
+std::optional<Arguments> read_arguments(const std::string& program, const std::string& purpose, bool needs_input,
+                                        int argc, char** argv);
 
 // What a stage starts from.
 struct Start {
@@ -47,10 +50,12 @@ struct Start {
 
 // Reads the command line, stage.yaml and the input state, and checks that they belong together: the stage is of this
 // kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
-Start read_start(const char* kind, int argc, char** argv);
+// nullopt: help or version was asked for and is printed. Throws InputError and StateError.
+std::optional<Start> read_start(const std::string& kind, const std::string& purpose, int argc, char** argv);
 
-// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code.
-int stage_main(const char* kind, void (*body)(const Start& start), int argc, char** argv);
+// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code. `purpose`:
+// what the program is for, for --help.
+int stage_main(const char* kind, const char* purpose, void (*body)(const Start& start), int argc, char** argv);
 
 // Where the state's coordinates begin, in the user's, m.
 Vec3 origin_of(const Start& start);

@@ -220,5 +220,7 @@ void run(const common::Start& start) {
 } // namespace pneuma::stages::formfind
 
 int main(int argc, char** argv) {
-  return pneuma::stages::common::stage_main("formfind", pneuma::stages::formfind::run, argc, argv);
+  return pneuma::stages::common::stage_main(
+      "formfind", "finds the form of a film of given prestress under given pressure, with a verdict and a self-check",
+      pneuma::stages::formfind::run, argc, argv);
 }

@@ -116,5 +116,6 @@ void run(const common::Start& start) {
 } // namespace pneuma::stages::inflate
 
 int main(int argc, char** argv) {
-  return pneuma::stages::common::stage_main("inflate", pneuma::stages::inflate::run, argc, argv);
+  return pneuma::stages::common::stage_main("inflate", "inflates a cushion under regulated air and its weight",
+                                            pneuma::stages::inflate::run, argc, argv);
 }

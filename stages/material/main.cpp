@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include <fmt/format.h>
@@ -10,7 +9,6 @@
 #include "geometry/base/log.h"
 #include "pipeline/schema/spelling.h"
 #include "pipeline/workflow/materials.h"
-#include "stages/common/command_line.h"
 #include "stages/common/law.h"
 #include "stages/common/law_at.h"
 #include "stages/material/fit.h"
@@ -244,11 +242,9 @@ private:
 };
 
 int run(int argc, char** argv) {
-  if (common::asks_for_help(argc, argv)) {
-    std::puts(usage());
-    return 0;
-  }
-  Options options = parse(argc, argv);
+  std::optional<Options> asked = parse(argc, argv);
+  if (!asked) return 0;
+  Options& options = *asked;
   const workflow::MaterialsResult read = read_materials(options);
   const std::vector<workflow::Material>& materials = read.materials;
   std::vector<TestCurve> tests;

@@ -2,21 +2,23 @@
 #include "stages/material/options.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
+#include "pipeline/command_line/command_line.h"
 #include "pipeline/schema/quantity.h"
-#include "stages/common/command_line.h"
 
 namespace pneuma::stages::material {
 
 namespace {
 
 using base::InputError;
-using common::Words;
+using pipeline::command_line::Command;
+using pipeline::command_line::Times;
+using pipeline::command_line::whole_number;
+using pipeline::command_line::Words;
 using pipeline::schema::parse_number;
 
 // A number in `unit` or, with a unit behind it, any quantity of its kind.
@@ -25,14 +27,6 @@ double quantity(const std::string& option, const std::string& text, const std::s
   const pipeline::schema::Quantity read = pipeline::schema::parse_quantity(text, unit);
   if (!read.error.empty()) throw InputError(fmt::format("{}: {}", option, read.error));
   return read.value;
-}
-
-int whole(const std::string& option, const std::string& text, int least, int most) {
-  const auto number = parse_number(text);
-  if (!number || *number != std::floor(*number) || *number < least || *number > most) {
-    throw InputError(fmt::format("{}: `{}` is not a whole number from {} to {}", option, text, least, most));
-  }
-  return static_cast<int>(*number);
 }
 
 std::vector<std::string> parts(const std::string& text) {
@@ -95,60 +89,7 @@ void set_angle(Options& options, const std::string& text) {
   options.angle = read.value;
 }
 
-const std::vector<common::Switch<Options>>& switches() {
-  static const std::vector<common::Switch<Options>> all = {
-      {"--strain", 1, [](Options& o, const Words& v) { set_strain(o, v[0]); }},
-      {"--steps", 1, [](Options& o, const Words& v) { o.steps = whole("--steps", v[0], 10, 100000); }},
-      {"--ratios", 1, [](Options& o, const Words& v) { set_ratios(o, v[0]); }},
-      {"--rate", 1, [](Options& o, const Words& v) { set_rates(o, v[0]); }},
-      {"--temperature", 1, [](Options& o, const Words& v) { set_temperature(o, v[0]); }},
-      {"--angle", 1, [](Options& o, const Words& v) { set_angle(o, v[0]); }},
-      {"--true", 0, [](Options& o, const Words&) { o.true_measures = true; }},
-      {"--data", 1, [](Options& o, const Words& v) { o.data.emplace_back(v[0]); }},
-      {"--csv", 1, [](Options& o, const Words& v) { o.csv = v[0]; }},
-      {"--svg", 1, [](Options& o, const Words& v) { o.svg = v[0]; }},
-      {"--fit", 1, [](Options& o, const Words& v) { o.branches = whole("--fit", v[0], 1, 8); }},
-      {"--softening", 0, [](Options& o, const Words&) { o.softening = true; }},
-  };
-  return all;
-}
-
-} // namespace
-
-std::string name_of(const Ratio& ratio) {
-  if (ratio.shear) return "shear";
-  if (ratio.b == 0) return "uniaxial";
-  return fmt::format("{:.4g}:{:.4g}", ratio.a, ratio.b);
-}
-
-const char* usage() {
-  return "usage: pneuma material MATERIALS.yaml [NAME ...] [options]\n"
-         "  --strain E           pull the pieces to this engineering strain, and back to no force [10 %]\n"
-         "  --ratios A:B,...     nominal stresses along the two axes; 1:0 is uniaxial [1:0,1:1,2:1]\n"
-         "                       shear: 2 E12, with free sides\n"
-         "  --rate R,...         strain rates of foils that know time, 1/s [0.001]\n"
-         "  --temperature T      of the foil, where its values depend on it [that of the tests; 23 degC]\n"
-         "  --angle A            from the warp direction to the first axis [0 deg]\n"
-         "  --true               logarithmic strain and Cauchy stress [engineering strain and nominal stress]\n"
-         "  --steps N            of loading [100]\n"
-         "  --data FILE.csv      data of a test to compare with: the misfit, and marks in the picture; again for more\n"
-         "  --csv FILE.csv       write all points of the curves\n"
-         "  --svg FILE.svg       draw the curves\n"
-         "  --fit N              the N hardening branches nearest to the uniaxial test data, or to the curve itself\n"
-         "  --softening          branches before the last may fall";
-}
-
-Options parse(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  Options options;
-  common::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
-    if (options.materials.empty()) {
-      options.materials = word;
-    } else {
-      options.names.push_back(word);
-    }
-  });
-  if (options.materials.empty()) throw InputError(fmt::format("no file of materials is given\n{}", usage()));
+void check_together(const Options& options) {
   if (!options.csv.empty() && std::find(options.data.begin(), options.data.end(), options.csv) != options.data.end()) {
     throw InputError(fmt::format("--csv: `{}` holds the test data", options.csv.string()));
   }
@@ -162,6 +103,51 @@ Options parse(int argc, char** argv) {
   if (!options.svg.empty() && options.svg.extension() != ".svg") {
     throw InputError(fmt::format("--svg: `{}` does not end in .svg", options.svg.string()));
   }
+}
+
+Command program(Options& o) {
+  return {
+      "pneuma-material",
+      "pulls test pieces of materials, draws their curves, compares them with tests, and fits hardening to those",
+      {{"MATERIALS.yaml", "", "file of materials", [&](const Words& v) { o.materials = v[0]; }, Times::once},
+       {"NAME", "", "materials of the file [all]", [&](const Words& v) { o.names.push_back(v[0]); }, Times::any},
+       {"--strain", "E", "pull the pieces to this engineering strain, and back to no force [10 %]",
+        [&](const Words& v) { set_strain(o, v[0]); }},
+       {"--ratios", "A:B,...",
+        "nominal stresses along the two axes; 1:0 is uniaxial; shear: 2 E12, with free sides [1:0,1:1,2:1]",
+        [&](const Words& v) { set_ratios(o, v[0]); }},
+       {"--rate", "R,...", "strain rates of foils that know time, 1/s [0.001]",
+        [&](const Words& v) { set_rates(o, v[0]); }},
+       {"--temperature", "T", "of the foil, where its values depend on it [that of the tests; 23 degC]",
+        [&](const Words& v) { set_temperature(o, v[0]); }},
+       {"--angle", "A", "from the warp direction to the first axis [0 deg]",
+        [&](const Words& v) { set_angle(o, v[0]); }},
+       {"--true", "", "logarithmic strain and Cauchy stress [engineering strain and nominal stress]",
+        [&](const Words&) { o.true_measures = true; }},
+       {"--steps", "N", "of loading [100]",
+        [&](const Words& v) { o.steps = whole_number("--steps", v[0], 10, 100000); }},
+       {"--data", "FILE.csv", "data of a test to compare with: the misfit, and marks in the picture; again for more",
+        [&](const Words& v) { o.data.emplace_back(v[0]); }, Times::any},
+       {"--csv", "FILE.csv", "write all points of the curves", [&](const Words& v) { o.csv = v[0]; }},
+       {"--svg", "FILE.svg", "draw the curves", [&](const Words& v) { o.svg = v[0]; }},
+       {"--fit", "N", "the N hardening branches nearest to the uniaxial test data, or to the curve itself",
+        [&](const Words& v) { o.branches = whole_number("--fit", v[0], 1, 8); }},
+       {"--softening", "", "branches before the last may fall", [&](const Words&) { o.softening = true; }}},
+      {},
+      [&] { check_together(o); }};
+}
+
+} // namespace
+
+std::string name_of(const Ratio& ratio) {
+  if (ratio.shear) return "shear";
+  if (ratio.b == 0) return "uniaxial";
+  return fmt::format("{:.4g}:{:.4g}", ratio.a, ratio.b);
+}
+
+std::optional<Options> parse(int argc, char** argv) {
+  Options options;
+  if (!pipeline::command_line::read(program(options), Words(argv + 1, argv + argc))) return std::nullopt;
   return options;
 }
 

@@ -35,9 +35,7 @@ struct Options {
   bool softening = false;
 };
 
-const char* usage();
-
-// Throws InputError with what is wrong and what is allowed.
-Options parse(int argc, char** argv);
+// nullopt: help or version was asked for and is printed. Throws InputError with what is wrong and what is allowed.
+std::optional<Options> parse(int argc, char** argv);
 
 } // namespace pneuma::stages::material

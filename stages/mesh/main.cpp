@@ -127,5 +127,6 @@ void run(const common::Start& start) {
 } // namespace pneuma::stages::mesh
 
 int main(int argc, char** argv) {
-  return pneuma::stages::common::stage_main("mesh", pneuma::stages::mesh::run, argc, argv);
+  return pneuma::stages::common::stage_main("mesh", "meshes the outline: the flat mesh of all foils",
+                                            pneuma::stages::mesh::run, argc, argv);
 }

@@ -266,5 +266,7 @@ void run(const common::Start& start) {
 } // namespace pneuma::stages::pattern
 
 int main(int argc, char** argv) {
-  return pneuma::stages::common::stage_main("pattern", pneuma::stages::pattern::run, argc, argv);
+  return pneuma::stages::common::stage_main("pattern",
+                                            "cuts a form into flat strips, draws them, and welds the cushion from them",
+                                            pneuma::stages::pattern::run, argc, argv);
 }

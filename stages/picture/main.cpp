@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cstdio>
-
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
 #include "pipeline/state/state_file.h"
-#include "stages/common/command_line.h"
 #include "stages/picture/draw.h"
 
 namespace pneuma::stages::picture {
 
 int run(int argc, char** argv) {
-  if (common::asks_for_help(argc, argv)) {
-    std::puts(usage());
-    return 0;
-  }
-  const Options options = parse(argc, argv);
-  draw(pipeline::state::read_state(options.state), options);
+  const std::optional<Options> options = parse(argc, argv);
+  if (options) draw(pipeline::state::read_state(options->state), *options);
   return 0;
 }
 

@@ -1,57 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/picture/options.h"
 
-#include <charconv>
-#include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/types.h"
-#include "stages/common/command_line.h"
+#include "pipeline/command_line/command_line.h"
+#include "pipeline/schema/quantity.h"
+#include "pipeline/schema/spelling.h"
 
 namespace pneuma::stages::picture {
 
 namespace {
 
 using base::InputError;
-using common::Words;
-using pipeline::schema::suggestion;
+using pipeline::command_line::Command;
+using pipeline::command_line::Times;
+using pipeline::command_line::whole_number;
+using pipeline::command_line::Words;
 
-template <class Number>
-Number number(const std::string& option, const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw InputError(
-        fmt::format("{}: '{}' is not a {}", option, text, std::is_integral_v<Number> ? "whole number" : "number"));
-  }
-  if (!std::isfinite(static_cast<double>(value))) throw InputError(fmt::format("{}: must be finite", option));
-  return value;
+double number(const std::string& option, const std::string& text) {
+  const std::optional<double> value = pipeline::schema::parse_number(text);
+  if (!value) throw InputError(fmt::format("{}: `{}` is not a number", option, text));
+  return *value;
 }
 
 void set_size(Options& options, const std::string& text) {
   constexpr int least = 64;
   constexpr int most = 8192; // software rendering has a limit of 16384
   const std::size_t cross = text.find('x');
-  if (cross == std::string::npos) throw InputError(fmt::format("--size: '{}' is not WxH, e.g. 1400x900", text));
-  options.width = number<int>("--size", text.substr(0, cross));
-  options.height = number<int>("--size", text.substr(cross + 1));
-  for (const int size : {options.width, options.height}) {
-    if (size < least || size > most) {
-      throw InputError(fmt::format("--size: {} pixels are not within {} .. {}", size, least, most));
-    }
-  }
+  if (cross == std::string::npos) throw InputError(fmt::format("--size: `{}` is not WxH, e.g. 1400x900", text));
+  options.width = whole_number("--size", text.substr(0, cross), least, most);
+  options.height = whole_number("--size", text.substr(cross + 1), least, most);
 }
 
 void set_component(Options& options, const std::string& text) {
   if (text == "magnitude") return options.component.reset();
-  options.component = number<int>("--component", text);
+  options.component = whole_number("--component", text, 0);
 }
 
 void set_range(Options& options, const std::string& low, const std::string& high) {
-  options.range = {number<double>("--range", low), number<double>("--range", high)};
+  options.range = {number("--range", low), number("--range", high)};
   if (options.range->first >= options.range->second) {
     throw InputError(fmt::format("--range: {} is not below {}", low, high));
   }
@@ -65,51 +56,40 @@ void set_view(Options& options, const std::string& text) {
       return;
     }
   }
-  throw InputError(
-      fmt::format("--view: '{}' is none of {}{}", text, pipeline::schema::joined(names), suggestion(text, names)));
+  throw InputError(fmt::format("--view: `{}` is none of {}{}", text, pipeline::schema::joined(names),
+                               pipeline::schema::suggestion(text, names)));
 }
 
-const std::vector<common::Switch<Options>>& switches() {
-  static const std::vector<common::Switch<Options>> all = {
-      {"--field", 1, [](Options& o, const Words& v) { o.field = v[0]; }},
-      {"--out", 1, [](Options& o, const Words& v) { o.out = v[0]; }},
-      {"--size", 1, [](Options& o, const Words& v) { set_size(o, v[0]); }},
-      {"--title", 1, [](Options& o, const Words& v) { o.title = v[0]; }},
-      {"--component", 1, [](Options& o, const Words& v) { set_component(o, v[0]); }},
-      {"--range", 2, [](Options& o, const Words& v) { set_range(o, v[0], v[1]); }},
-      {"--explode", 1, [](Options& o, const Words& v) { o.explode = number<double>("--explode", v[0]); }},
-      {"--view", 1, [](Options& o, const Words& v) { set_view(o, v[0]); }},
-      {"--warp", 1, [](Options& o, const Words& v) { o.warp = number<double>("--warp", v[0]); }},
-  };
-  return all;
+Command program(Options& o) {
+  return {"pneuma-picture",
+          "draws a state as a PNG, without a screen",
+          {{"STATE.hdf", "", "the state", [&](const Words& v) { o.state = v[0]; }, Times::once},
+           {"--field", "NAME|none", "field that gives the colours; none: the mesh alone",
+            [&](const Words& v) { o.field = v[0]; }, Times::once},
+           {"--out", "PICTURE.png", "file to be written", [&](const Words& v) { o.out = v[0]; }, Times::once},
+           {"--size", "WxH", "pixels [1400x900]", [&](const Words& v) { set_size(o, v[0]); }},
+           {"--title", "TEXT", "above the picture [none]", [&](const Words& v) { o.title = v[0]; }},
+           {"--component", "N", "component of a field that has several, from 0 [magnitude]",
+            [&](const Words& v) { set_component(o, v[0]); }},
+           {"--range", "A B",
+            "ends of the colour scale in the field's stored unit (SI: Pa, not MPa) [smallest and largest value]",
+            [&](const Words& v) { set_range(o, v[0], v[1]); }},
+           {"--explode", "METRES", "draw neighbouring foils this much further apart [0]",
+            [&](const Words& v) { o.explode = number("--explode", v[0]); }},
+           {"--view", "iso|top|side", "from where [iso]", [&](const Words& v) { set_view(o, v[0]); }},
+           {"--warp", "FACTOR", "draw displacements this many times as large [1]",
+            [&](const Words& v) { o.warp = number("--warp", v[0]); }}},
+          {},
+          [&] {
+            if (o.out.extension() != ".png") throw InputError("--out must name a .png file");
+          }};
 }
 
 } // namespace
 
-const char* usage() {
-  return "usage: pneuma-picture STATE.hdf --field NAME|none --out PICTURE.png\n"
-         "  --size WxH           pixels [1400x900]\n"
-         "  --title TEXT         above the picture [none]\n"
-         "  --component N        component of a field that has several, from 0 [magnitude]\n"
-         "  --range A B          ends of the colour scale in the field's stored unit (SI: Pa, not MPa) [smallest and "
-         "largest value]\n"
-         "  --explode METRES     draw neighbouring foils this much further apart [0]\n"
-         "  --view iso|top|side  [iso]\n"
-         "  --warp FACTOR        draw displacements this many times as large [1]";
-}
-
-Options parse(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
+std::optional<Options> parse(int argc, char** argv) {
   Options options;
-  common::read_command_line(words, switches(), usage(), options, [&](const std::string& word) {
-    if (!options.state.empty()) {
-      throw InputError(fmt::format("two states: {} and {}", options.state.string(), word));
-    }
-    options.state = word;
-  });
-  if (options.state.empty()) throw InputError(fmt::format("no state is given\n{}", usage()));
-  if (options.field.empty()) throw InputError(fmt::format("--field is missing\n{}", usage()));
-  if (options.out.extension() != ".png") throw InputError(fmt::format("--out must name a .png file\n{}", usage()));
+  if (!pipeline::command_line::read(program(options), Words(argv + 1, argv + argc))) return std::nullopt;
   return options;
 }
 

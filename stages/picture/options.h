@@ -25,9 +25,7 @@ struct Options {
   double warp = 1; // displacements are drawn this many times as large
 };
 
-const char* usage();
-
-// Throws InputError with what is wrong and what is allowed.
-Options parse(int argc, char** argv);
+// nullopt: help or version was asked for and is printed. Throws InputError with what is wrong and what is allowed.
+std::optional<Options> parse(int argc, char** argv);
 
 } // namespace pneuma::stages::picture

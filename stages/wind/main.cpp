@@ -213,5 +213,6 @@ void run(const common::Start& start) {
 } // namespace pneuma::stages::wind
 
 int main(int argc, char** argv) {
-  return pneuma::stages::common::stage_main("wind", pneuma::stages::wind::run, argc, argv);
+  return pneuma::stages::common::stage_main("wind", "loads an inflated cushion by wind, snow and patch loads",
+                                            pneuma::stages::wind::run, argc, argv);
 }
