@@ -18,9 +18,17 @@ namespace command_line = pipeline::command_line;
 
 namespace {
 
-void check_arguments(const Arguments& arguments, bool needs_input) {
+std::string program_of(const std::string& kind) {
+  return "pneuma-" + kind;
+}
+
+bool needs_input(const std::string& kind) {
+  return kind != "mesh";
+}
+
+void check_arguments(const Arguments& arguments, bool has_input) {
   if (arguments.out.empty() && !arguments.check) throw base::InputError("--out is missing");
-  if (needs_input && arguments.in.empty() && !arguments.check) throw base::InputError("--in is missing");
+  if (has_input && arguments.in.empty() && !arguments.check) throw base::InputError("--in is missing");
   if (!arguments.out.empty() && arguments.out.extension() != ".hdf") {
     throw base::InputError(
         fmt::format("--out must end in .hdf (ParaView opens it by that), not `{}`", arguments.out.string()));
@@ -33,12 +41,11 @@ void check_arguments(const Arguments& arguments, bool needs_input) {
 
 } // namespace
 
-std::optional<Arguments> read_arguments(const std::string& program, const std::string& purpose, bool needs_input,
-                                        int argc, char** argv) {
+std::optional<Arguments> read_arguments(const std::string& kind, const std::string& purpose, int argc, char** argv) {
   using command_line::Words;
   Arguments arguments;
   command_line::Command command = {
-      program,
+      program_of(kind),
       purpose,
       {{"--config", "stage.yaml", "settings of the stage, as `pneuma run` writes them",
         [&](const Words& v) { arguments.config = v[0]; }, command_line::Times::once},
@@ -51,9 +58,9 @@ std::optional<Arguments> read_arguments(const std::string& program, const std::s
        {"--note", "TEXT", "a warning about the input, to stand among those of the stage; again for more",
         [&](const Words& v) { arguments.notes.push_back(v[0]); }, command_line::Times::any}},
       {},
-      [&] { check_arguments(arguments, needs_input); },
+      [&] { check_arguments(arguments, needs_input(kind)); },
       "`pneuma run WORKFLOW.yaml` writes the settings and calls this program."};
-  if (needs_input) {
+  if (needs_input(kind)) {
     command.options.insert(command.options.begin() + 1,
                            {"--in", "state.hdf", "state to start from; needed without --check",
                             [&](const Words& v) { arguments.in = v[0]; }});
@@ -108,13 +115,10 @@ void read_input(Start& start) {
 
 } // namespace
 
-std::optional<Start> read_start(const std::string& kind, const std::string& purpose, int argc, char** argv) {
+Start read_start(const std::string& kind, Arguments arguments) {
   Start start;
-  start.program = "pneuma-" + kind;
-  const bool needs_input = kind != "mesh";
-  std::optional<Arguments> arguments = read_arguments(start.program, purpose, needs_input, argc, argv);
-  if (!arguments) return std::nullopt;
-  start.arguments = std::move(*arguments);
+  start.program = program_of(kind);
+  start.arguments = std::move(arguments);
   start.workflow = pipeline::workflow::read_stage(start.arguments.config);
   if (const pipeline::workflow::StageSettings& stage = start.stage(); stage.run != kind) {
     throw base::InputError(fmt::format("{}: this is a stage of kind `{}`; {} runs `{}`",
@@ -125,8 +129,8 @@ std::optional<Start> read_start(const std::string& kind, const std::string& purp
   start.workflow = to_local(std::move(start.workflow), start.frame);
   base::tell_places_from(origin_of(start));
   check_laws(start.workflow.materials, start.workflow.site.temperature);
-  if (needs_input && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
-  if (needs_input && !start.arguments.in.empty()) read_input(start);
+  if (needs_input(kind) && !(start.arguments.check && start.arguments.in.empty())) start.laws = laws_of(start.workflow);
+  if (needs_input(kind) && !start.arguments.in.empty()) read_input(start);
   for (const std::string& note : start.arguments.notes) base::warn(note);
   if (!start.arguments.check) {
     start.outputs = std::make_unique<pipeline::files::Outputs>(start.arguments.out, start.arguments.in);
@@ -146,9 +150,9 @@ pipeline::state::Provenance provenance(const Start& start) {
 }
 
 int stage_main(const char* kind, const char* purpose, void (*body)(const Start&), int argc, char** argv) {
-  return base::guarded_main(fmt::format("pneuma-{}", kind).c_str(), [&] {
-    const std::optional<Start> start = read_start(kind, purpose, argc, argv);
-    if (start) body(*start);
+  return base::guarded_main(program_of(kind).c_str(), [&] {
+    std::optional<Arguments> arguments = read_arguments(kind, purpose, argc, argv);
+    if (arguments) body(read_start(kind, std::move(*arguments)));
     return 0;
   });
 }

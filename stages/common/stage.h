@@ -30,9 +30,9 @@ struct Arguments {
   std::vector<std::string> notes; // warnings about the input, to stand among those of the stage
 };
 
-// nullopt: help or version was asked for and is printed. Throws InputError for a wrong line.
-std::optional<Arguments> read_arguments(const std::string& program, const std::string& purpose, bool needs_input,
-                                        int argc, char** argv);
+// Reads the line of a stage of this kind ("mesh"); `purpose`: what it is for, for --help. nullopt: help or version was
+// asked for and is printed. Throws InputError for a wrong line.
+std::optional<Arguments> read_arguments(const std::string& kind, const std::string& purpose, int argc, char** argv);
 
 // What a stage starts from.
 struct Start {
@@ -48,13 +48,12 @@ struct Start {
   const pipeline::workflow::StageSettings& stage() const { return workflow.stages.front(); }
 };
 
-// Reads the command line, stage.yaml and the input state, and checks that they belong together: the stage is of this
-// kind, the state holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names.
-// nullopt: help or version was asked for and is printed. Throws InputError and StateError.
-std::optional<Start> read_start(const std::string& kind, const std::string& purpose, int argc, char** argv);
+// Reads stage.yaml and the input state, and checks that they belong together: the stage is of this kind, the state
+// holds the foils and chambers of the cushion, and comes from the kind of stage that `from` names. Throws InputError
+// and StateError.
+Start read_start(const std::string& kind, Arguments arguments);
 
-// The whole of a stage's program: reads its start, runs `body`, and tells errors; returns the exit code. `purpose`:
-// what the program is for, for --help.
+// The whole of a stage's program: reads its line and its start, runs `body`, and tells errors; returns the exit code.
 int stage_main(const char* kind, const char* purpose, void (*body)(const Start& start), int argc, char** argv);
 
 // Where the state's coordinates begin, in the user's, m.

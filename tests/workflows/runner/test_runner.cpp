@@ -234,6 +234,31 @@ TEST_F(RunnerTest, ForceRunsDependentsOnlyIfItsStateChanged) {
   EXPECT_THAT(outcome.text, HasSubstr("form: runs: asked for\n"));
 }
 
+TEST_F(RunnerTest, ForceGoesWithOnlyAndFromWhereItsStageIsSelected) {
+  pneuma({"w.yaml"});
+  EXPECT_EQ(pneuma({"run", "w.yaml", "--only", "inflated", "--force", "inflated"}).code, 0);
+  EXPECT_THAT(ran(), ElementsAre("inflated"));
+  EXPECT_EQ(pneuma({"w.yaml", "--from", "gust", "--force", "form"}).code, 0);
+  EXPECT_THAT(ran(), UnorderedElementsAre("form", "gust"));
+}
+
+TEST_F(RunnerTest, ForceOfAStageThatIsNotSelectedIsRefused) {
+  const Outcome only = pneuma({"run", "w.yaml", "--only", "form", "--force", "gust", "--force", "form"});
+  EXPECT_EQ(only.code, 2);
+  EXPECT_THAT(only.text, HasSubstr("--force gust: --only form runs `form` alone"));
+  const Outcome from = pneuma({"run", "w.yaml", "--force", "calm", "--from", "gust"});
+  EXPECT_EQ(from.code, 2);
+  EXPECT_THAT(from.text, HasSubstr("--force calm: --from gust runs what `gust` needs"));
+  const Outcome both = pneuma({"run", "w.yaml", "--only", "gust", "--from", "gust"});
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.text, HasSubstr("leave one of them away\n`pneuma run --help` shows all options"));
+  const Outcome empty = pneuma({"run", "w.yaml", "--only", ""});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_THAT(empty.text, HasSubstr("--only: the name of the stage is empty"));
+  EXPECT_THAT(ran(), IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
 TEST_F(RunnerTest, UnknownStageIsBadInput) {
   const Outcome outcome = pneuma({"run", "w.yaml", "--force", "gusst"});
   EXPECT_EQ(outcome.code, 2);

@@ -284,7 +284,7 @@ TEST_F(MaterialBench, WhatIsWrongIsSaidWithItsPlace) {
     EXPECT_EQ(run.code, 2) << words << '\n' << run.text;
     EXPECT_THAT(run.text, HasSubstr(message)) << words;
   };
-  fails("", "no file of materials");
+  fails("", "MATERIALS.yaml is missing");
   fails("absent.yaml", "absent.yaml` cannot be read");
   fails("m.yaml fiol", "m.yaml: there is no material `fiol`; did you mean `foil`?; materials: foil, rubber");
   fails("m.yaml --stran 1", "did you mean `--strain`?");

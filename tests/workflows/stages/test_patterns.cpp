@@ -473,13 +473,8 @@ TEST_F(Patterns, FlatFoilIsCutWhereItIsNamed) {
   }
 }
 
-TEST_F(Patterns, ProgramHasTheSameHelpAndCheckAsTheOthers) {
+TEST_F(Patterns, ProgramHasTheSameCheckAsTheOthers) {
   const fs::path program = programs / "pneuma-pattern";
-  const Outcome help = call(program.string() + " --help");
-  EXPECT_EQ(help.code, 0);
-  EXPECT_EQ(help.text, "usage: pneuma-pattern --config stage.yaml --in state.hdf --out state.hdf [--threads N] "
-                       "[--check] [--note TEXT]\n");
-  EXPECT_EQ(call(program.string() + " --nonsense").code, 2);
   write(cushion("T3", rectangle, "0.5 m",
                 "  strips: {run: pattern, from: form, strips_per_foil: 2, direction: 0 deg}\n"));
   run();

@@ -132,7 +132,7 @@ TEST_F(Picture, OfAnUnknownFieldNamesTheNearest) {
 TEST_F(Picture, RefusesWrongOptionsWithWhatIsAllowed) {
   const std::pair<const char*, const char*> cases[] = {
       {"--field sag --size 40", "is not WxH"},
-      {"--field sag --size 4x400", "are not within 64 .. 8192"},
+      {"--field sag --size 4x400", "is not a whole number from 64 to 8192"},
       {"--field sag --view tpo", "did you mean `top`"},
       {"--field sag --ragne 1 2", "did you mean `--range`"},
       {"--field sag --range 2 1", "is not below"},
