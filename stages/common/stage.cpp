@@ -51,7 +51,7 @@ std::optional<Arguments> read_arguments(const std::string& kind, const std::stri
         [&](const Words& v) { arguments.config = v[0]; }, command_line::Times::once},
        {"--out", "state.hdf", "state to be written; other results go beside it; needed without --check",
         [&](const Words& v) { arguments.out = v[0]; }},
-       {"--threads", "N", "for the solution of equations [1]",
+       {"--threads", "N", "that compute side by side [1]",
         [&](const Words& v) { arguments.threads = command_line::whole_number("--threads", v[0], 1); }},
        {"--check", "", "read and check everything, compute and write nothing",
         [&](const Words&) { arguments.check = true; }},

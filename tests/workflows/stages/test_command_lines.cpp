@@ -50,7 +50,7 @@ TEST_P(CommandLines, HelpAndVersionGoToStandardOutputWhateverElseIsSaid) {
       EXPECT_THAT(help.text, StartsWith(GetParam().words + ": "));
       EXPECT_THAT(help.text, HasSubstr("\nusage: " + GetParam().words));
       EXPECT_THAT(help.text, HasSubstr("  --version"));
-      if (!GetParam().option.empty()) EXPECT_THAT(help.text, HasSubstr("\n  " + GetParam().option + " "));
+      EXPECT_THAT(help.text, HasSubstr("\n  " + (GetParam().option.empty() ? "-h," : GetParam().option) + " "));
       std::istringstream lines(help.text);
       for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
     }
