@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <getopt.h>
 
 #include "geometry/base/errors.h"
 #include "geometry/base/log.h"
@@ -91,13 +92,6 @@ std::string help(const std::string& called, const Command& command) {
   return text;
 }
 
-// The option of this name; their number: there is none.
-std::size_t find(const Command& command, const std::string& name) {
-  const auto has_name = [&](const Option& option) { return option.name == name && !is_by_place(option); };
-  const auto found = std::find_if(command.options.begin(), command.options.end(), has_name);
-  return static_cast<std::size_t>(found - command.options.begin());
-}
-
 // Where a word by place belongs.
 std::size_t find_place(const Command& command, const std::string& word, const Given& given) {
   for (std::size_t i = 0; i < command.options.size(); ++i) {
@@ -114,43 +108,73 @@ std::size_t find_place(const Command& command, const std::string& word, const Gi
   throw InputError(fmt::format("unknown option `{}`{}", name, schema::suggestion(name, known)));
 }
 
-// The values of an option: those behind its `=`, and more from `rest`, which they leave.
-Words take_values(const Command& command, const Option& option, Words values, std::span<const std::string>& rest) {
-  const std::size_t count = split(option.values).size();
-  if (values.size() > count) throw InputError(fmt::format("{} takes no value", option.name));
-  while (values.size() < count && !rest.empty() && find(command, rest.front()) == command.options.size()) {
-    values.push_back(rest.front());
-    rest = rest.subspan(1);
+// What getopt_long returns for the first option; those after it follow.
+constexpr int first_option = 256;
+
+std::vector<::option> as_getopt_takes_them(const Command& command) {
+  std::vector<::option> all;
+  for (std::size_t i = 0; i < command.options.size(); ++i) {
+    const Option& one = command.options[i];
+    if (is_by_place(one)) continue;
+    all.push_back({one.name.c_str() + 2, one.values.empty() ? no_argument : required_argument, nullptr,
+                   first_option + static_cast<int>(i)});
   }
-  if (values.size() < count) {
-    throw InputError(fmt::format("{} needs {}: {}", option.name,
-                                 count == 1 ? "a value" : fmt::format("{} values", count), option.values));
-  }
-  return values;
+  all.push_back({});
+  return all;
 }
 
-Given sort(const Command& command, std::span<const std::string> rest) {
+bool is_option(const Command& command, const std::string& word) {
+  return word.starts_with("--") && std::any_of(command.options.begin(), command.options.end(),
+                                               [&](const Option& option) { return option.name == word; });
+}
+
+[[noreturn]] void refuse_values(const Option& option) {
+  const std::size_t count = split(option.values).size();
+  throw InputError(fmt::format("{} needs {}: {}", option.name, count == 1 ? "a value" : fmt::format("{} values", count),
+                               option.values));
+}
+
+Given sort(const Command& command, std::span<const std::string> words) {
   Given given(command.options.size());
-  bool by_place = false;
-  while (!rest.empty()) {
-    const std::string& word = rest.front();
-    rest = rest.subspan(1);
-    if (by_place || word == "-" || !word.starts_with("-")) {
-      given[find_place(command, word, given)].push_back({word});
-    } else if (word == "--") {
-      by_place = true;
+  std::vector<std::string> copies = {command.name}; // getopt takes what could be changed
+  copies.insert(copies.end(), words.begin(), words.end());
+  std::vector<char*> line;
+  for (std::string& word : copies) line.push_back(word.data());
+  const int count = static_cast<int>(line.size());
+  line.push_back(nullptr);
+  const std::vector<::option> options = as_getopt_takes_them(command);
+  opterr = optind = 0;
+  const auto option_of = [&](int code) -> const Option& {
+    return command.options[static_cast<std::size_t>(code - first_option)];
+  };
+  const auto take_word = [&](const std::string& word) { given[find_place(command, word, given)].push_back({word}); };
+  for (int code = 0; (code = getopt_long(count, line.data(), "-:", options.data(), nullptr)) != -1;) {
+    if (code == 1) {
+      take_word(optarg);
+    } else if (code == ':') {
+      refuse_values(option_of(optopt));
+    } else if (code == '?') {
+      if (optopt >= first_option) throw InputError(fmt::format("{} takes no value", option_of(optopt).name));
+      const std::string word = line[static_cast<std::size_t>(std::max(1, optind - 1))];
+      refuse_option(command, word.substr(0, word.find('=')));
     } else {
-      const std::size_t equals = word.find('=');
-      const std::string name = word.substr(0, equals);
-      const std::size_t found = find(command, name);
-      if (found == command.options.size()) refuse_option(command, name);
-      const Option& option = command.options[found];
-      if (!given[found].empty() && !repeats(option)) throw InputError(fmt::format("{} is given twice", name));
-      Words attached;
-      if (equals != std::string::npos) attached.push_back(word.substr(equals + 1));
-      given[found].push_back(take_values(command, option, std::move(attached), rest));
+      const Option& one = option_of(code);
+      const bool is_apart = optarg != nullptr && optarg == line[static_cast<std::size_t>(optind - 1)];
+      const std::string word = line[static_cast<std::size_t>(optind - (is_apart ? 2 : 1))];
+      const std::string name = word.substr(0, word.find('='));
+      if (name != one.name) refuse_option(command, name); // getopt takes what is short for one
+      if (is_apart && is_option(command, optarg)) refuse_values(one);
+      std::vector<Words>& times = given[static_cast<std::size_t>(code - first_option)];
+      if (!times.empty() && !repeats(one)) throw InputError(fmt::format("{} is given twice", one.name));
+      Words& values = times.emplace_back();
+      if (optarg != nullptr) values.emplace_back(optarg);
+      while (values.size() < split(one.values).size()) {
+        if (optind == count) refuse_values(one);
+        values.emplace_back(line[static_cast<std::size_t>(optind++)]);
+      }
     }
   }
+  for (int i = optind; i < count; ++i) take_word(line[static_cast<std::size_t>(i)]); // behind `--`
   return given;
 }
 
