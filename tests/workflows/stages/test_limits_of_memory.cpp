@@ -44,7 +44,7 @@ TEST_F(LimitsOfMemory, EveryStageEndsUnderEveryLimitAtWhichItStarts) {
     if (stage.from != nullptr) words.insert(words.end(), {"--in", out(stage.from) / "state.hdf"});
     int answered = 0;
     for (const double gigabytes : {0.09, 0.12, 0.15, 0.18, 0.21, 0.24, 0.27, 0.3, 0.36, 0.45, 0.6}) {
-      if (run_limited({program, "--version"}, folder, {seconds, gigabytes}).code == 127) continue; // it does not start
+      if (run_limited({program, "--version"}, folder, {seconds, gigabytes}).code != 0) continue; // it does not start
       ++answered;
       expect_answer(run_limited(words, folder, {seconds, gigabytes}), gigabytes);
     }
