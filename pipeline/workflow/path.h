@@ -132,6 +132,7 @@ struct PathOptions : SolverOptions {
 
 struct PathSettings {
   bool contact_stops = true;
+  bool snaps = false; // under load control, where the cushion loses its shape
   Control control;
   std::vector<Moment> history; // of load control, from nothing at 0 s, linear between; empty: no time passes
   PathOptions options;
@@ -141,6 +142,12 @@ struct PathSettings {
     keys("contact", &Self::contact_stops,
          choice<bool>({{"stop", true, "ends the stage"}, {"ignore", false, "goes on, marked"}}).otherwise("stop"),
          "what happens when foils meet");
+    const auto under_load = [](const auto& path) { return std::holds_alternative<LoadControl>(path.control); };
+    keys("after_limit", &Self::snaps,
+         choice<bool>({{"stop", false, "ends the stage"}, {"snap", true, "goes on to the state it jumps to, marked"}})
+             .otherwise("stop"),
+         "what happens where the cushion loses its shape under the load")
+        .where(under_load, "is for load control: another goes on through limit points");
     const auto in_a_word = mapped<Control>(
         choice<bool>({{"load", true, "the load grows; automatic steps"}}).named("word", "in a word"),
         [](bool) { return Control(LoadControl{}); }, [](const Control&) { return true; });
@@ -149,7 +156,6 @@ struct PathSettings {
                          [](const Control&) { return 1; })
              .otherwise("load"),
          "how the path is followed");
-    const auto under_load = [](const auto& path) { return std::holds_alternative<LoadControl>(path.control); };
     const char* no_time = "is for load control: on the path of another no time passes";
     const auto evenly = mapped<std::vector<Moment>>(
         quantity("s").positive().usual(1e-3, 1e10, "usually from milliseconds to 100 years"),

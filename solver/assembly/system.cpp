@@ -458,6 +458,12 @@ void System::restore(Memory memory) {
   is_new_ = false;
 }
 
+bool System::flows_with_time() const {
+  return time_step_ > 0 && std::ranges::any_of(foils_, [](const FoilEquations& foil) {
+           return material::is_rate_dependent(foil.membrane.law);
+         });
+}
+
 System::Flow System::flow() const {
   Flow largest;
   for (std::size_t f = 0; f < foils_.size(); ++f) {

@@ -91,6 +91,7 @@ public:
   // Material history. `evaluate` goes from the accepted one, in one step that takes this long, s.
   void set_time_step(double seconds) { time_step_ = seconds; }
   double time_step() const { return time_step_; }
+  bool flows_with_time() const; // a foil, in a step of this time
   // What the last evaluation left becomes the accepted history; once, and only where it was possible and a step on from
   // the accepted one.
   void accept_history();

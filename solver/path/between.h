@@ -16,7 +16,6 @@ using Objection = std::function<std::string(const Configuration&)>;
 // The tangent at an accepted state, in the direction that the loads go on.
 struct Look {
   std::optional<Change> way; // of everything as the load factor grows by one; none: no tangent (flat, slack), no load
-  std::optional<int> count;  // negative eigenvalues, load held; none: not safe
 };
 
 // Right after an evaluation there, with tangents; one factorisation a foil.
@@ -28,11 +27,10 @@ struct Stretch {
   const Look &begin, &end;
 };
 
-// Why a step is too long to be taken in one, by what it measures: the counts at its ends, how far the chord is from
-// both tangents, the cushion half-way between (positions, objection, stability); empty: nothing speaks against it.
-// `halves_agree`: whether two half steps end in the same state; asked where areas go slack on the way, so that tangents
-// at both ends differ and nothing jumped. Leaves the system evaluated elsewhere.
-std::string hidden_between(System& system, Newton& newton, const Stretch& step, const Objection& objection,
-                           const std::function<bool()>& halves_agree);
+// Why a step is too long to be taken in one; empty: nothing speaks against it. Looked at are the chord, which a jump
+// makes longer than the tangents at both ends, and the positions on the cubic between them, which may meet with an
+// objection. What stays within a hundredth of the span is not: a fold of a few elements depends on the mesh.
+// Leaves the system evaluated elsewhere.
+std::string hidden_between(System& system, Newton& newton, const Stretch& step, const Objection& objection);
 
 } // namespace pneuma::solver::path

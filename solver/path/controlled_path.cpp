@@ -169,22 +169,6 @@ private:
     return sign < 0 ? -1.0 * way : way;
   }
 
-  Change difference(const Configuration& from, const Configuration& to) const {
-    Change change;
-    for (const assembly::FoilEquations& foil : system_.foils()) {
-      VecX u(foil.pattern.size);
-      for (std::size_t i = 0; i < foil.coordinate.size(); ++i) {
-        const Index k = foil.coordinate[i];
-        const auto node = static_cast<std::size_t>(k / 3);
-        u[static_cast<Eigen::Index>(i)] = to.positions[node][k % 3] - from.positions[node][k % 3];
-      }
-      change.u.push_back(std::move(u));
-    }
-    change.p = to.pressures - from.pressures;
-    change.load_factor = to.load_factor - from.load_factor;
-    return change;
-  }
-
   // One step of the control, cut until it is found.
   void walk() {
     std::optional<double> shortest;
@@ -205,7 +189,7 @@ private:
       std::string reason = outcome.reason;
       bool objected = false;
       if (outcome.converged) {
-        if (dot_u(difference(at_, next), *way_) <= 0) {
+        if (dot_u(difference(system_, at_, next), *way_) <= 0) {
           reason = "the path was lost";
         } else if (turned_over(system_, at_, next)) {
           reason = "an element would be turned over";
@@ -257,7 +241,7 @@ private:
     for (int tries = 0; tries < 6 && !turns; ++tries, length *= cut) {
       Configuration next = moved(system_, from, (length / root_mean_square(system_, *way_before)) * *way_before);
       if (!solve(next, {HeldArc{from.positions}, 0, length, false}).converged) break;
-      last_ = difference(from, next);
+      last_ = difference(system_, from, next);
       at_ = next;
       look();
       if (!way_ || dot_u(*way_, *way_before) < 0.5) break;
@@ -354,7 +338,7 @@ private:
       }
       const Configuration from = at_;
       const std::optional<Change> last_before = last_;
-      last_ = difference(from, next);
+      last_ = difference(system_, from, next);
       at_ = std::move(next);
       look();
       const End end = end_between(from);
@@ -417,7 +401,7 @@ private:
     const double rate = rate_.value_or(way_->load_factor);
     std::optional<int> count = count_;
     const std::optional<Change> way_before = way_, last_before = last_;
-    last_ = difference(from, next);
+    last_ = difference(system_, from, next);
     at_ = next;
     look();
     const double length = std::sqrt(dot_u(*last_, *last_));
@@ -439,7 +423,7 @@ private:
       if (locate_limit(goal, from, next, rate, beyond)) {
         if (count && count_beyond) *count += *count_beyond > *count ? 1 : -1;
         const CriticalPoint limit{CriticalPoint::Kind::limit, at_.load_factor, at_.pressures, result_.steps + 1};
-        const Change left = difference(at_, next);
+        const Change left = difference(system_, at_, next);
         const End end = end_between(from);
         if (end == End::missed) return too_long();
         if (end != End::none) {
@@ -487,7 +471,7 @@ private:
   // An arc that leads nowhere: back to where it began, or far beyond any cushion.
   bool lost(const Configuration& from) {
     constexpr double far = 1e3;
-    const Change way = difference(begin_, at_);
+    const Change way = difference(system_, begin_, at_);
     const double moved_by = root_mean_square(system_, way);
     farthest_ = std::max(farthest_, moved_by);
     if (moved_by > far * first_span_) {
@@ -498,7 +482,7 @@ private:
     } else if (from.load_factor * at_.load_factor < 0) {
       const double part = from.load_factor / (from.load_factor - at_.load_factor);
       constexpr double near = 0.02;
-      if (root_mean_square(system_, difference(begin_, between(from, at_, part))) < near * farthest_) {
+      if (root_mean_square(system_, difference(system_, begin_, between(from, at_, part))) < near * farthest_) {
         result_.reason = "the path came back to where it began: it turned at a bifurcation, and no goal was reached";
       }
     }
@@ -510,7 +494,7 @@ private:
   void stand_at(const Configuration& from, const Configuration& at) {
     at_ = at;
     system_.evaluate(at_, true);
-    last_ = difference(from, at_);
+    last_ = difference(system_, from, at_);
     look();
   }
 
@@ -554,7 +538,7 @@ private:
       std::optional<Configuration> c = state_between(goal, from, next, part);
       if (!c) return false;
       at_ = std::move(*c);
-      last_ = difference(from, at_);
+      last_ = difference(system_, from, at_);
       look();
       if (!way_) return false;
       const double rate = way_->load_factor;
@@ -589,7 +573,7 @@ private:
         std::optional<Configuration> c = state_between(goal, from, next, part);
         if (!c) return;
         at_ = std::move(*c);
-        last_ = difference(from, at_);
+        last_ = difference(system_, from, at_);
         look();
         if (count_ahead_ && *count_ahead_ == count) {
           low = part;
@@ -645,9 +629,9 @@ private:
     }
     if (which == nullptr) return End::none;
     Configuration end = between(from, at_, nearest);
-    const Change step = difference(from, at_);
+    const Change step = difference(system_, from, at_);
     const bool found = newton_.solve(end, which->held, which->value, options_.max_iterations, {}).converged;
-    const double part = dot_u(difference(from, end), step) / dot_u(step, step);
+    const double part = dot_u(difference(system_, from, end), step) / dot_u(step, step);
     if (!found || part < -sliver || part > 1 + sliver) return End::missed; // or another branch has it too
     stand_at(from, end);
     const bool is_part = part_ < options_.parts && ends > 0 && which == &goals.back();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,18 +57,6 @@ bool is_folded(const System& system, Index foil, Index element, const Configurat
                       [](const element::PointState& p) { return p.surface == material::Surface::taut; });
 }
 
-// Where the free nodes go as the load factor grows by one, from the last evaluation, if edges move: with the edges
-// alone, the strip of elements beside them would take all their move.
-std::optional<Change> way_with_edges(const System& system, Newton& newton, const Configuration& at) {
-  if (system.model().move.size() == 0) return std::nullopt;
-  Tangent& tangent = newton.tangent();
-  if (!tangent.factorize(at, Tangent::Repair::indefinite) || tangent.artificial_tension() > 0) return std::nullopt;
-  const std::optional<Change> way = tangent.along(at);
-  constexpr double no_load = 1e-12;
-  if (!way || std::abs(way->load_factor) <= no_load) return std::nullopt;
-  return (1 / way->load_factor) * *way;
-}
-
 } // namespace
 
 double FlowLimits::excess(const System::Flow& flow) const {
@@ -102,99 +91,199 @@ bool turned_over(const System& system, const Configuration& before, const Config
   return turned;
 }
 
+namespace {
+
+// Load control from one accepted state to the next.
+class LoadWalk {
+public:
+  LoadWalk(System& system, Newton& newton, Configuration& at, const LoadPathOptions& options, const Accept& accepted,
+           const Report& report)
+      : system_(system), newton_(newton), at_(at), options_(options), accepted_(accepted), report_(report),
+        length_(1.0 / options.parts) {}
+
+  PathResult run() {
+    const std::vector<Moment>& schedule = options_.schedule;
+    if (schedule.size() < 2) throw std::invalid_argument("a schedule has a beginning and an end");
+    at_.load_factor = result_.load_factor = schedule.front().load_factor;
+    const assembly::Balance balance = system_.evaluate_accepted(at_, true);
+    const bool in_balance = newton_.stands_at(balance);
+    if (in_balance || (balance.possible && moves_edges())) look_ = look_at(newton_, at_);
+    is_looked_at_ = in_balance; // else it is no tangent of the path, but serves a first step
+    while (stretch_ + 1 < schedule.size() && result_.reason.empty()) step();
+    if (result_.reason.empty()) result_.end = PathEnd::reached;
+    return std::move(result_);
+  }
+
+private:
+  struct Plan {
+    double next = 0; // of the stretch
+    bool to_goal = false;
+    double load_factor = 0;
+  };
+  // A step that was found.
+  struct Tried {
+    Configuration at;
+    Look look;
+    Plan plan;
+    int iterations = 0;
+    double excess = 0;
+  };
+  // Why a step that was tried must be shorter.
+  struct Fault {
+    std::string reason;
+    bool is_objection = false;
+    bool is_hidden = false; // something between its ends
+  };
+
+  bool moves_edges() const { return system_.model().move.size() > 0; }
+
+  Plan planned() const {
+    const double goal = part_ == options_.parts ? 1.0 : 1.0 / options_.parts * part_;
+    const double left = goal - walked_;
+    Plan plan;
+    plan.to_goal = length_ > 0.999 * left; // no sliver of a step at the end of a part
+    plan.next = plan.to_goal ? goal : walked_ + (length_ > 0.6 * left ? 0.5 * left : length_);
+    plan.load_factor =
+        std::lerp(options_.schedule[stretch_].load_factor, options_.schedule[stretch_ + 1].load_factor, plan.next);
+    return plan;
+  }
+
+  void step() {
+    if (result_.steps == options_.max_steps) {
+      return end_at(PathEnd::stuck, fmt::format("all {} steps that are allowed ended at load factor {:.6g}",
+                                                options_.max_steps, result_.load_factor));
+    }
+    const Plan plan = planned();
+    const double change = plan.load_factor - result_.load_factor, part = plan.next - walked_;
+    Configuration trial = at_;
+    if (moves_edges() && look_.way) trial = moved(system_, at_, change * *look_.way);
+    trial.load_factor = plan.load_factor;
+    system_.set_time_step(part * (options_.schedule[stretch_ + 1].time - options_.schedule[stretch_].time));
+    const Newton::Outcome outcome = newton_.solve(trial, [&](const Iteration& i) {
+      if (report_) report_(result_.steps + 1, i);
+    });
+    Fault fault{outcome.converged ? "" : outcome.reason};
+    if (outcome.converged && turned_over(system_, at_, trial)) fault.reason = "an element would be turned over";
+    const double excess = fault.reason.empty() ? options_.flow.excess(system_.flow()) : 0;
+    if (excess > 1 && part > options_.smallest_step) {
+      length_ = part * FlowLimits::factor(excess);
+      return;
+    }
+    if (fault.reason.empty() && options_.objection) {
+      fault.reason = options_.objection(trial);
+      fault.is_objection = !fault.reason.empty();
+    }
+    Look end;
+    if (fault.reason.empty()) fault = hidden(trial, end);
+    if (fault.is_hidden) beyond_ = Tried{trial, end, plan, outcome.iterations, excess};
+    if (!fault.reason.empty()) return shorten(fault, part, change);
+    accept({std::move(trial), std::move(end), plan, outcome.iterations, excess});
+  }
+
+  // What the way to a state that was found hides; `end`: the tangent there. Leaves the system evaluated there.
+  Fault hidden(Configuration& trial, Look& end) {
+    const bool flows = system_.flows_with_time();               // then the load alone does not tell the way
+    if (!flows || moves_edges()) end = look_at(newton_, trial); // before the history is accepted: what flows goes on
+    if (!is_looked_at_ || flows) return {};
+    bool objected = false;
+    const Objection objection = [&](const Configuration& at) {
+      const std::string reason = options_.objection ? options_.objection(at) : "";
+      objected = objected || !reason.empty();
+      return reason;
+    };
+    const std::string reason = hidden_between(system_, newton_, {at_, trial, look_, end}, objection);
+    system_.evaluate(trial, true);
+    return {reason, objected, !reason.empty() && !objected};
+  }
+
+  void shorten(const Fault& fault, double part, double change) {
+    length_ = part / 4;
+    constexpr double near_enough = 1e-3; // to what is objected to, or hidden
+    const double least = fault.is_objection ? near_enough : fault.is_hidden ? near_enough / 4 : 0;
+    if (length_ >= std::max(options_.smallest_step, least)) return;
+    if (options_.snaps && !fault.is_objection && beyond_) return snap();
+    const bool looks = change != 0 && !options_.snaps;
+    const auto limit = looks ? limit_ahead(system_, newton_, at_, change) : std::nullopt;
+    const PathEnd end = fault.is_objection ? PathEnd::stopped : PathEnd::stuck;
+    if (limit) {
+      result_.critical.push_back(*limit);
+      result_.critical.back().step = result_.steps;
+      return end_at(end,
+                    fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
+                                "volume, displacement or arc_length goes on{}{}",
+                                limit->load_factor, pressures_of(system_, *limit),
+                                fault.is_objection ? "; behind it " : "", fault.is_objection ? fault.reason : ""));
+    }
+    if (fault.is_objection) return end_at(end, fault.reason);
+    if (fault.is_hidden) {
+      return end_at(end, fmt::format("the cushion loses its shape between load factor {:.6g} and {:.6g}: {}",
+                                     result_.load_factor, result_.load_factor + change, fault.reason));
+    }
+    end_at(end, fmt::format("no equilibrium found beyond load factor {:.6g}: {}", result_.load_factor, fault.reason));
+  }
+
+  // Takes the nearest state behind a jump.
+  void snap() {
+    Tried beyond = *std::exchange(beyond_, std::nullopt);
+    system_.evaluate(beyond.at, true);
+    result_.snaps.push_back({result_.load_factor, beyond.at.load_factor});
+    length_ = beyond.plan.next - walked_;
+    accept(std::move(beyond));
+  }
+
+  void accept(Tried step_found) {
+    constexpr int easy_iterations = 8;
+    const auto& [found, look, plan, iterations, excess] = step_found;
+    system_.accept_history();
+    at_ = found;
+    look_ = look;
+    beyond_.reset();
+    is_looked_at_ = true;
+    result_.load_factor = at_.load_factor;
+    const double step_length = plan.next - walked_;
+    walked_ = plan.next;
+    ++result_.steps;
+    if (iterations <= easy_iterations) {
+      const double factor = std::min(2.0, FlowLimits::factor(excess));
+      length_ = std::min(factor * (factor < 2 ? step_length : length_), 1.0 / options_.parts);
+    }
+    const Step step{result_.steps, result_.load_factor, iterations, plan.to_goal,
+                    std::lerp(options_.schedule[stretch_].time, options_.schedule[stretch_ + 1].time, walked_)};
+    if (plan.to_goal && ++part_ > options_.parts) {
+      ++stretch_;
+      part_ = 1;
+      walked_ = 0;
+    }
+    if (accepted_) accepted_(step, at_);
+  }
+
+  void end_at(PathEnd end, std::string reason) {
+    system_.evaluate_accepted(at_, true);
+    result_.end = end;
+    result_.reason = std::move(reason);
+  }
+
+  System& system_;
+  Newton& newton_;
+  Configuration& at_; // the last accepted state
+  const LoadPathOptions& options_;
+  const Accept& accepted_;
+  const Report& report_;
+  PathResult result_;
+  std::size_t stretch_ = 0;     // of the schedule
+  double length_;               // of the next step, of a stretch
+  int part_ = 1;                // the one being walked
+  double walked_ = 0;           // of the stretch
+  Look look_;                   // at the last accepted state
+  std::optional<Tried> beyond_; // the nearest that was found behind a jump
+  bool is_looked_at_ = false;   // it is in balance, so that its tangent is that of the path
+};
+
+} // namespace
+
 PathResult follow_load(System& system, Newton& newton, Configuration& configuration, const LoadPathOptions& options,
                        const Accept& accepted, const Report& report) {
-  PathResult result;
-  const std::vector<Moment>& schedule = options.schedule;
-  if (schedule.size() < 2) throw std::invalid_argument("a schedule has a beginning and an end");
-  configuration.load_factor = result.load_factor = schedule.front().load_factor;
-  const double part = 1.0 / options.parts;
-  constexpr int easy_iterations = 8;
-  std::optional<Change> way;
-  if (system.model().move.size() > 0 && system.evaluate_accepted(configuration, true).possible) {
-    way = way_with_edges(system, newton, configuration);
-  }
-  double length = part; // of a stretch
-  int part_number = 1;  // the part being walked
-  double walked = 0;    // of the stretch
-  const auto stuck = [&](std::string reason) {
-    system.evaluate_accepted(configuration, true);
-    result.reason = std::move(reason);
-    return result;
-  };
-  std::size_t stretch = 0;
-  while (stretch + 1 < schedule.size()) {
-    const Moment& begin = schedule[stretch];
-    const Moment& end = schedule[stretch + 1];
-    if (result.steps == options.max_steps) {
-      return stuck(fmt::format("all {} steps that are allowed ended at load factor {:.6g}", options.max_steps,
-                               result.load_factor));
-    }
-    const double goal = part_number == options.parts ? 1.0 : part * part_number;
-    const double left = goal - walked;
-    // no sliver of a step at the end of a part
-    const bool to_goal = length > 0.999 * left;
-    const double next = to_goal ? goal : walked + (length > 0.6 * left ? 0.5 * left : length);
-    const double load_factor = std::lerp(begin.load_factor, end.load_factor, next);
-    Configuration trial = way ? moved(system, configuration, (load_factor - result.load_factor) * *way) : configuration;
-    trial.load_factor = load_factor;
-    system.set_time_step((next - walked) * (end.time - begin.time));
-    Newton::Outcome outcome = newton.solve(trial, [&](const Iteration& i) {
-      if (report) report(result.steps + 1, i);
-    });
-    if (outcome.converged && turned_over(system, configuration, trial)) {
-      outcome.converged = false;
-      outcome.reason = "an element would be turned over";
-    }
-    const double excess = outcome.converged ? options.flow.excess(system.flow()) : 0;
-    if (excess > 1 && next - walked > options.smallest_step) {
-      length = (next - walked) * FlowLimits::factor(excess);
-      continue;
-    }
-    const std::string objection = outcome.converged && options.objection ? options.objection(trial) : "";
-    if (!outcome.converged || !objection.empty()) {
-      const double reach = trial.load_factor - result.load_factor;
-      length = (next - walked) / 4;
-      constexpr double near_enough = 1e-3; // to what is objected to
-      if (length < (objection.empty() ? options.smallest_step : std::max(options.smallest_step, near_enough))) {
-        result.end = objection.empty() ? PathEnd::stuck : PathEnd::stopped;
-        const auto limit = reach != 0 ? limit_ahead(system, newton, configuration, reach) : std::nullopt;
-        if (limit) {
-          result.critical.push_back(*limit);
-          result.critical.back().step = result.steps;
-          return stuck(fmt::format("limit point at load factor {:.8g} ({}): nothing nearby carries more; a control of "
-                                   "volume, displacement or arc_length goes on{}{}",
-                                   limit->load_factor, pressures_of(system, *limit),
-                                   objection.empty() ? "" : "; behind it ", objection));
-        }
-        return stuck(!objection.empty() ? objection
-                                        : fmt::format("no equilibrium found beyond load factor {:.6g}: {}",
-                                                      result.load_factor, outcome.reason));
-      }
-      continue;
-    }
-    way = way_with_edges(system, newton, trial); // before the history is accepted: what flows goes on flowing
-    system.accept_history();
-    configuration = std::move(trial);
-    result.load_factor = configuration.load_factor;
-    const double step_length = next - walked;
-    walked = next;
-    ++result.steps;
-    if (outcome.iterations <= easy_iterations) {
-      const double factor = std::min(2.0, FlowLimits::factor(excess));
-      length = std::min(factor * (factor < 2 ? step_length : length), part);
-    }
-    const Step step{result.steps, result.load_factor, outcome.iterations, to_goal,
-                    std::lerp(begin.time, end.time, walked)};
-    if (to_goal && ++part_number > options.parts) {
-      ++stretch;
-      part_number = 1;
-      walked = 0;
-    }
-    if (accepted) accepted(step, configuration);
-  }
-  result.end = PathEnd::reached;
-  return result;
+  return LoadWalk(system, newton, configuration, options, accepted, report).run();
 }
 
 } // namespace pneuma::solver::path

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "solver/path/newton.h"
+#include "solver/path/between.h"
 
 namespace pneuma::solver::path {
 
@@ -34,14 +34,15 @@ struct PathResult {
   int steps = 0;
   double load_factor = 0;              // of the last good state
   std::vector<CriticalPoint> critical; // in their order
-  std::optional<Held> held;            // what the control held last, for the count of what is stable under it
+  struct Snap {
+    double from = 0, to = 0; // load factors
+  };
+  std::vector<Snap> snaps;  // that load control took, in their order
+  std::optional<Held> held; // what the control held last, for the count of what is stable under it
 };
 
 using Accept = std::function<void(const Step&, const Configuration&)>;
 using Report = std::function<void(int step, const Iteration&)>;
-
-// Why a state that was found must not be accepted (foils that pass through each other); empty: it may.
-using Objection = std::function<std::string(const Configuration&)>;
 
 // How far foils may flow in one step, as equivalent plastic strain: the directions of flow are those of its end.
 struct FlowLimits {
@@ -67,10 +68,12 @@ struct LoadPathOptions {
   double smallest_step = 1e-5; // of a stretch of the schedule
   FlowLimits flow;
   int max_steps = 100000;
+  bool snaps = false;  // where the cushion jumps, go on to the state that it jumps to
   Objection objection; // is answered by shorter steps; the path ends `stopped` a thousandth of the load before it
 };
 
-// Load control: along the schedule, whole parts first, cut back by four on any failure, doubled after easy success;
+// Load control: along the schedule, whole parts first, cut back by four on any failure and where a jump lies hidden
+// between two states (between.h), doubled after easy success;
 // foils that yield shorten its steps, too (FlowLimits); where edges move, a step starts along the
 // tangent of the last one. `accepted` sees every accepted step, with the system evaluated there; `configuration` ends
 // as the last accepted one. Where it gets stuck it looks for a limit point just ahead and names it.

@@ -33,6 +33,10 @@ bool is_balanced(const assembly::Balance& balance, double tolerance, double last
 
 Newton::Newton(System& system, NewtonOptions options) : system_(system), options_(options), tangent_(system, work_) {}
 
+bool Newton::stands_at(const assembly::Balance& balance) const {
+  return balance.possible && is_balanced(balance, options_.tolerance, 1, 1);
+}
+
 assembly::Balance Newton::evaluate(Configuration& configuration, bool with_tangent) {
   const Stopwatch watch(work_.assembly);
   return system_.evaluate(configuration, with_tangent);

@@ -46,6 +46,9 @@ public:
   Outcome solve(Configuration& configuration, const Held& held, double wanted, int max_iterations,
                 const std::function<void(const Iteration&)>& report = {});
 
+  // Whether a start is in equilibrium already.
+  bool stands_at(const assembly::Balance& balance) const;
+
   Tangent& tangent() { return tangent_; }
   const NewtonOptions& options() const { return options_; }
   const Work& work() const { return work_; }

@@ -56,6 +56,22 @@ double dot(const Change& a, const Change& b) {
   return dot_u(a, b) + a.p.dot(b.p) + a.load_factor * b.load_factor;
 }
 
+Change difference(const System& system, const Configuration& from, const Configuration& to) {
+  Change change;
+  for (const assembly::FoilEquations& foil : system.foils()) {
+    VecX u(foil.pattern.size);
+    for (std::size_t i = 0; i < foil.coordinate.size(); ++i) {
+      const Index k = foil.coordinate[i];
+      const auto node = static_cast<std::size_t>(k / 3);
+      u[static_cast<Eigen::Index>(i)] = to.positions[node][k % 3] - from.positions[node][k % 3];
+    }
+    change.u.push_back(std::move(u));
+  }
+  change.p = to.pressures - from.pressures;
+  change.load_factor = to.load_factor - from.load_factor;
+  return change;
+}
+
 Configuration moved(const System& system, const Configuration& from, const Change& change) {
   Configuration to = from;
   for (std::size_t i = 0; i < change.u.size(); ++i) {

@@ -31,6 +31,9 @@ double dot_u(const Change& a, const Change& b); // of the displacements alone
 // The configuration moved by a change.
 Configuration moved(const System& system, const Configuration& from, const Change& change);
 
+// The change from one configuration to another.
+Change difference(const System& system, const Configuration& from, const Configuration& to);
+
 // The line that a control adds to the equations: row . change = -residual, in units of its own.
 struct Row {
   Change form;

@@ -150,6 +150,7 @@ private:
     options.objection = objection;
     if (given.max_steps) options.max_steps = *given.max_steps;
     options.flow.growth = given.plastic_step;
+    options.snaps = drive_.path.snaps;
     return path::follow_load(system_, newton_, c, options, accepted, report);
   }
 
@@ -280,6 +281,23 @@ private:
     summary.set("peak.step", largest_load_step_);
   }
 
+  static std::string reached_verdict(const path::PathResult& result) {
+    if (result.snaps.empty()) return "converged";
+    return fmt::format("converged after the cushion lost its shape at load factor {:.4g}", result.snaps.front().from);
+  }
+
+  static void summarize_snaps(const path::PathResult& result, Summary& summary) {
+    for (std::size_t i = 0; i < result.snaps.size(); ++i) {
+      const auto& [from, to] = result.snaps[i];
+      const std::string key = fmt::format("snaps.#{}.", i);
+      summary.set(key + "from", from);
+      summary.set(key + "to", to);
+      warn(fmt::format("the cushion loses its shape at load factor {:.4g} and jumps to another (`after_limit: snap`)",
+                       from),
+           summary);
+    }
+  }
+
   // What acts on a foil and what the frame answers, N: pressures, and the dead loads at its free nodes (those at held
   // nodes reach the frame without it).
   void summarize_balance(const FoilResults& r, Summary& summary) const {
@@ -305,7 +323,7 @@ private:
     const path::Stability stability = newton_.tangent().stability(c, held ? &*held : nullptr);
     const std::vector<FoilResults> foils = results(c);
     const bool reached = path_result.end == path::PathEnd::reached;
-    const std::string verdict = reached ? "converged" : path_result.reason;
+    const std::string verdict = reached ? reached_verdict(path_result) : path_result.reason;
 
     State state = make_state(c, foils);
     state.provenance.converged = reached;
@@ -332,6 +350,7 @@ private:
       summary.set(key + "law", law_name(chamber.law));
     }
     summarize_path(path_result, summary);
+    summarize_snaps(path_result, summary);
     for (const pipeline::state::Chamber& chamber : state.chambers) {
       if (chamber.law != pipeline::state::GasLaw::closed || chamber.gauge_pressure >= 0) continue;
       warn(fmt::format("the air shut in chamber `{}` is at {} Pa below the still air: it has lost its pressure",

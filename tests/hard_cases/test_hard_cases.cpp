@@ -325,9 +325,13 @@ assembly::Model free_dome() {
 }
 
 TEST(HardCases, CushionPushedInsideOutStandsOnTheOtherSide) {
-  // snaps through to its mirror image
+  // snaps through to its mirror image, where it may
   assembly::Model model = free_dome();
-  Solved s(model);
+  const Solved stopped(model);
+  EXPECT_FALSE(stopped.converged());
+  EXPECT_NE(stopped.path.reason.find("limit point at load factor 0.02"), std::string::npos) << stopped.path.reason;
+  Solved s(model, tests::AtLimit::snap);
+  EXPECT_FALSE(s.path.snaps.empty());
   record("pushed inside out", s);
   ASSERT_TRUE(s.converged()) << s.path.reason;
   model.face_pressure = {{0, 300}, {0, 0}};
@@ -366,7 +370,7 @@ TEST(HardCases, AirPressedIntoAHundredthOfItsVolume) {
   assembly::Model model = model_of(c, 300);
   model.chambers[0].gas = tests::closed_now(from, 0, 0);
   model.face_pressure = {{0, -30e3}, {0, 30e3}};
-  Solved s(model, from.at);
+  Solved s(model, from.at, 1, tests::AtLimit::snap); // folds of the slack foils on the way
   record("air pressed into a hundredth", s);
   ASSERT_TRUE(s.converged()) << s.path.reason;
   EXPECT_GT(s.system.chamber_volume(0), 0);

@@ -150,7 +150,27 @@ TEST(ControlledPath, CountsSeeTheLimitPointsAndTheControlHoldsWhatTheLoadDoesNot
   EXPECT_EQ(count.control_held, negative - 1);
 }
 
-TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
+// However it is walked.
+TEST(ControlledPath, LoadControlEndsAtTheLimitPointWhateverItsSteps) {
+  const Pyramid pyramid;
+  for (const double top : {1.05, 1.2, 3.0}) {
+    for (const int parts : {1, 2, 5, 10, 20, 100}) {
+      assembly::System system(pyramid.model(top * pyramid.limit()), 1);
+      path::Newton newton(system, {});
+      assembly::Configuration at = tests::start_of(system.model());
+      path::LoadPathOptions options;
+      options.parts = parts;
+      const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
+      EXPECT_EQ(result.end, path::PathEnd::stuck) << top << " in " << parts;
+      ASSERT_EQ(result.critical.size(), 1u) << result.reason;
+      EXPECT_NEAR(result.critical[0].load_factor, 1 / top, 1e-6);
+      EXPECT_LE(result.load_factor, 1 / top + 1e-9);
+      EXPECT_GT(result.load_factor, 1 / top - 2e-3);
+    }
+  }
+}
+
+TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPointWhereItMay) {
   const Pyramid pyramid;
   const double top = 1.2 * pyramid.limit();
   assembly::System system(pyramid.model(top), 1);
@@ -158,8 +178,12 @@ TEST(ControlledPath, LoadControlSnapsToTheStableBranchBeyondTheLimitPoint) {
   assembly::Configuration at = tests::start_of(system.model());
   path::LoadPathOptions options;
   options.parts = 10;
+  options.snaps = true;
   const path::PathResult result = path::follow_load(system, newton, at, options, {}, tests::tell);
   ASSERT_EQ(result.end, path::PathEnd::reached) << result.reason;
+  ASSERT_EQ(result.snaps.size(), 1u);
+  EXPECT_NEAR(result.snaps[0].from, 1 / 1.2, 2e-3);
+  EXPECT_GT(result.snaps[0].to, 1 / 1.2);
   double lowest = 0;
   for (const Vec3& x : at.positions) lowest = std::min(lowest, x.z());
   EXPECT_LT(lowest, -0.1);

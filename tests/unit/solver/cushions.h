@@ -142,6 +142,9 @@ inline void tell(int step, const solver::path::Iteration& i) {
 }
 
 // A model and its solution at load factor 1.
+// What happens where the cushion loses its shape.
+enum class AtLimit : std::uint8_t { stop, snap };
+
 struct Solved {
   solver::assembly::System system;
   solver::path::Newton newton;
@@ -150,12 +153,17 @@ struct Solved {
 
   explicit Solved(solver::assembly::Model model, int parts = 1, int threads = 1)
       : system(std::move(model), threads), newton(system, {}), at(start_of(system.model())) {
-    run(parts);
+    run(parts, AtLimit::stop);
   }
-  Solved(solver::assembly::Model model, solver::assembly::Configuration from, int parts = 1)
+  Solved(solver::assembly::Model model, AtLimit at_limit)
+      : system(std::move(model), 1), newton(system, {}), at(start_of(system.model())) {
+    run(1, at_limit);
+  }
+  Solved(solver::assembly::Model model, solver::assembly::Configuration from, int parts = 1,
+         AtLimit at_limit = AtLimit::stop)
       : system(std::move(model), 1), newton(system, {}), at(std::move(from)) {
     at.load_factor = 0;
-    run(parts);
+    run(parts, at_limit);
   }
   // By Newton alone, from there with the whole load: foils may fold over on the way.
   Solved(solver::assembly::Model model, solver::assembly::Configuration from,
@@ -189,9 +197,10 @@ struct Solved {
   }
 
 private:
-  void run(int parts) {
+  void run(int parts, AtLimit at_limit) {
     solver::path::LoadPathOptions options;
     options.parts = parts;
+    options.snaps = at_limit == AtLimit::snap;
     path = solver::path::follow_load(system, newton, at, options, {}, tell);
   }
 };
