@@ -12,7 +12,10 @@ endif()
 
 find_program(PNEUMA_CCACHE ccache)
 if(PNEUMA_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${PNEUMA_CCACHE})
+  # Names relative to the base folder: another clone finds the same objects (with -g its own: debuggers want its sources).
+  # A folder's absolute name on a command line (-DTOP="/home/...") is a miss there.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+                                  CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_ABSSTDERR=1 ${PNEUMA_CCACHE})
 endif()
 
 # g++ 12 reports -Wrestrict falsely for "literal" + std::string at -O3 (GCC bug 105651)

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <vtkActor.h>
 #include <vtkActor2D.h>
+#include <vtkAutoInit.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
@@ -35,6 +36,11 @@
 #include "pipeline/schema/spelling.h"
 #include "stages/picture/offscreen.h"
 #include "stages/picture/surface.h"
+
+// What draws for VTK's interfaces; CMake's vtk_module_autoinit does it by an absolute path in every command line, which
+// the compiler's cache of another clone does not know.
+VTK_MODULE_INIT(vtkRenderingFreeType)
+VTK_MODULE_INIT(vtkRenderingOpenGL2)
 
 namespace pneuma::stages::picture {
 

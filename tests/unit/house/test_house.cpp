@@ -11,11 +11,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/places.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path top = PNEUMA_SOURCE_DIR;
+const fs::path top = pneuma::tests::source_folder;
 const std::vector<std::string> source_folders = {"geometry", "solver", "pipeline", "stages"};
 
 struct Source {

@@ -122,6 +122,8 @@ TEST(Balloon, NeoHookeanSphereHasItsLimitAtTheSixthRootOfSeven) {
   const InflatedBalloon& limit = limits[0];
   EXPECT_NEAR(limit.stretch, std::pow(7, 1.0 / 6), 1e-12);
   EXPECT_NEAR(limit.pressure, 4 * neo_hooke.c1 * h / R * 6 / 7 * std::pow(7, -1.0 / 6), 1e-12 * limit.pressure);
+  std::printf("neo-Hookean sphere: limit at stretch %.6f, p R / (C1 h) = %.6f\n", limit.stretch,
+              limit.pressure * R / (neo_hooke.c1 * h));
 }
 
 TEST(Balloon, MooneyRivlinSphereLosesItsLimitPointsAtARatioOf021446) {
@@ -132,6 +134,7 @@ TEST(Balloon, MooneyRivlinSphereLosesItsLimitPointsAtARatioOf021446) {
   };
   const double ratio = ratio_of(std::pow(19 + std::sqrt(396), 1.0 / 6));
   EXPECT_NEAR(ratio, 0.21446, 5e-6);
+  std::printf("Mooney-Rivlin sphere: limits up to C2 / C1 = %.6f\n", ratio);
   EXPECT_EQ(limit_points({BalloonShape::sphere, R, h, MooneyRivlin{1, ratio - 1e-4}}).size(), 2u);
   EXPECT_TRUE(limit_points({BalloonShape::sphere, R, h, MooneyRivlin{1, ratio + 1e-4}}).empty());
   // a maximum, and the minimum behind which the balloon stiffens

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "tests/places.h"
 #include "tests/workflows/damage/yaml_text.h"
 
 namespace pneuma::tests::damage {
@@ -62,7 +63,7 @@ void write_file(const fs::path& file, const std::string& text) {
 // What the programs take from a workflow file in a folder of the tree.
 Settings settings_of(const Tree& tree, const fs::path& folder, const std::string& file) {
   const fs::path out = tree.folder / "out";
-  const Ending ending = run_limited({PNEUMA_EFFECTIVE, file, out}, tree.folder / folder);
+  const Ending ending = run_limited({fs::path(program_folder) / "damage_effective", file, out}, tree.folder / folder);
   if (ending.code != 0) throw std::runtime_error(fmt::format("{}: {}\n{}", file, ending.words(), ending.text));
   Settings settings;
   std::istringstream lines(ending.text);
@@ -233,7 +234,7 @@ std::string read_file(const fs::path& file) {
 
 fs::path program(const std::string& name) {
   const char* folder = std::getenv("PNEUMA_BIN");
-  return fs::path(folder != nullptr ? folder : PNEUMA_PROGRAMS) / name;
+  return fs::path(folder != nullptr ? folder : program_folder) / name;
 }
 
 std::vector<Source> sources(const fs::path& top) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/places.h"
 #include "tests/workflows/damage/corpus.h"
 
 namespace pneuma::tests::damage {
@@ -18,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path top = PNEUMA_SOURCE_DIR;
+const fs::path top = source_folder;
 constexpr std::uint32_t seed = 11;
 constexpr std::size_t in_ci = 300;
 

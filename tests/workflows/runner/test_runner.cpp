@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/places.h"
 #include "tests/unit/pipeline/workflow/example.h"
 
 namespace pneuma::pipeline::workflow {
@@ -24,6 +25,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::UnorderedElementsAre;
+
+const std::filesystem::path runner = std::filesystem::path(tests::program_folder) / "pneuma";
 
 // `fail-ID`: ends with the code in it; `slow-ID`: works for a minute; `meet-ID`: needs the stage named in it at its
 // side; `steps-ID`: writes those steps; `verdict-ID`: the summary of a stage that fails. `check-KIND`: commands that
@@ -104,7 +107,7 @@ protected:
   std::filesystem::path out(const std::string& name) const { return folder.path() / "out" / "w" / name; }
 
   pid_t start(std::vector<std::string> words) const {
-    words.insert(words.begin(), PNEUMA_PROGRAM);
+    words.insert(words.begin(), runner);
     const pid_t pid = fork();
     if (pid != 0) return pid;
     const std::string log = folder.path() / "output", stages = folder.path() / "bin";
@@ -424,7 +427,7 @@ TEST_F(RunnerTest, WithoutAStandardOutputNothingIsSaidIntoItsFiles) {
     setenv("PNEUMA_STAGES", (folder.path() / "bin").c_str(), 1);
     for (int stream = 0; stream <= 2; ++stream) close(stream);
     if (chdir(folder.path().c_str()) != 0) _exit(126);
-    execl(PNEUMA_PROGRAM, "pneuma", "w.yaml", nullptr);
+    execl(runner.c_str(), "pneuma", "w.yaml", nullptr);
     _exit(127);
   }
   int status = 0;
@@ -570,7 +573,7 @@ TEST_F(RunnerTest, WhatSeveralProgramsFindIsToldOnceAtItsPlace) {
 
 TEST_F(RunnerTest, LawThatIsNoneIsToldAtItsPlaceAndNothingIsComputed) {
   for (const char* kind : {"formfind", "inflate", "wind"}) { // those of the build
-    const auto program = std::filesystem::path(PNEUMA_PROGRAM).parent_path() / fmt::format("pneuma-{}", kind);
+    const auto program = runner.parent_path() / fmt::format("pneuma-{}", kind);
     arm(fmt::format("check-{}", kind), fmt::format("exec {} --check --config \"$config\"\n", program.string()));
   }
   change("law: elastic, E: 900 MPa, nu: 0.45", "law: ogden, terms: [{mu: 6 MPa, alpha: 2}, {mu: -1 MPa, alpha: 2}]");

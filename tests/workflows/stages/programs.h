@@ -13,12 +13,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/places.h"
+
 namespace pneuma::tests {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-inline const fs::path programs = PNEUMA_PROGRAMS;
+inline const fs::path programs = program_folder;
 
 struct Outcome {
   int code = 0;

@@ -19,13 +19,13 @@ protected:
   using Edits = std::vector<std::pair<std::string, std::string>>; // before, after
   void run(const std::string& project, const std::string& file, const Edits& edits = {}) const {
     std::ostringstream text;
-    text << std::ifstream(fs::path(PNEUMA_SOURCE_DIR) / "projects" / project / (file + ".yaml")).rdbuf();
+    text << std::ifstream(fs::path(source_folder) / "projects" / project / (file + ".yaml")).rdbuf();
     std::string coarse = text.str();
     const auto replace = [&](const std::string& before, const std::string& after) {
       ASSERT_NE(coarse.find(before), std::string::npos);
       coarse.replace(coarse.find(before), before.size(), after);
     };
-    replace("../../configs", (fs::path(PNEUMA_SOURCE_DIR) / "configs").string());
+    replace("../../configs", (fs::path(source_folder) / "configs").string());
     replace("[28, 14]", "[12, 6]");
     for (const auto& [before, after] : edits) replace(before, after);
     std::ofstream(folder / (project + ".yaml")) << coarse;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "geometry/base/errors.h"
+#include "tests/places.h"
 #include "tests/unit/pipeline/workflow/example.h"
 
 namespace pneuma::pipeline::workflow {
@@ -260,7 +261,7 @@ PatternSettings pattern_of(const std::string& keys) {
 }
 
 TEST(GoodWorkflow, FromFormOverStripsToWindIsTheContractsExample) {
-  const std::string file = std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml";
+  const std::string file = std::string(tests::source_folder) + "/configs/materials/etfe.yaml";
   const Workflow workflow = read_good("pneuma: 1\nname: Single-chamber cushion, 6 m x 3 m\nmaterials: " + file + R"(
 site: {ambient_pressure: 101325 Pa, temperature: 23 degC, up: [0, 0, 1], gravity: on}
 cushion:
@@ -425,7 +426,7 @@ TEST(GoodWorkflow, MaterialsComeFromFilesBesideIt) {
 }
 
 TEST(GoodWorkflow, MaterialsOfThisRepositoryAreGood) {
-  const std::string file = std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml";
+  const std::string file = std::string(tests::source_folder) + "/configs/materials/etfe.yaml";
   std::string text =
       replaced(example, "materials:\n  etfe: {law: elastic, E: 900 MPa, nu: 0.45, density: 1750 kg/m3}\n",
                "materials: " + file + "\n");
@@ -726,7 +727,7 @@ TEST(ReadWorkflow, OfManyFaultsTheFirstAreTold) {
 }
 
 TEST(JsonSchema, CommittedFileIsTheGeneratedOne) {
-  EXPECT_EQ(text_of(std::filesystem::path(PNEUMA_SOURCE_DIR) / "configs" / "workflow.schema.json"),
+  EXPECT_EQ(text_of(std::filesystem::path(tests::source_folder) / "configs" / "workflow.schema.json"),
             workflow_json_schema())
       << "write it anew: pneuma schema > configs/workflow.schema.json";
 }

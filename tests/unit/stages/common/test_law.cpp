@@ -4,6 +4,7 @@
 
 #include "geometry/base/errors.h"
 #include "stages/common/law.h"
+#include "tests/places.h"
 #include "tests/unit/message_of.h"
 
 namespace pneuma::stages::common {
@@ -253,7 +254,7 @@ TEST(Law, TableFollowsTheMaterialItIsFittedTo) {
 
 TEST(Law, EveryMaterialOfThisRepositoryHasOneAndASource) {
   workflow::MaterialsResult library =
-      workflow::read_materials(std::string(PNEUMA_SOURCE_DIR) + "/configs/materials/etfe.yaml", {});
+      workflow::read_materials(std::string(tests::source_folder) + "/configs/materials/etfe.yaml", {});
   for (const workflow::Problem& problem : library.problems) ADD_FAILURE() << to_string(problem);
   EXPECT_EQ(library.materials.size(), library.names.size());
   for (const Material& material : library.materials) {

@@ -14,6 +14,7 @@
 #include <vtkPNGReader.h>
 
 #include "pipeline/state/state_file.h"
+#include "tests/places.h"
 #include "tests/unit/pipeline/state/cushion_state.h"
 #include "tests/unit/pipeline/state/temporary_folder.h"
 
@@ -32,8 +33,8 @@ struct Ended {
 
 // Runs the program under test; `environment` as in a shell. The OpenGL driver's own leaks are not ours to report.
 Ended picture(const std::string& arguments, const std::string& environment = "") {
-  const std::string command =
-      fmt::format("unset DISPLAY; ASAN_OPTIONS=detect_leaks=0 {} {} {} 2>&1", environment, PNEUMA_PICTURE, arguments);
+  const std::string command = fmt::format("unset DISPLAY; ASAN_OPTIONS=detect_leaks=0 {} {}/pneuma-picture {} 2>&1",
+                                          environment, tests::program_folder, arguments);
   Ended ended;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return ended;
