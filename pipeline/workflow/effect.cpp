@@ -6,16 +6,13 @@
 #include <fmt/format.h>
 
 #include "pipeline/schema/spelling.h"
+#include "pipeline/workflow/stages.h"
 
 namespace pneuma::pipeline::workflow {
 
 namespace {
 
 using schema::below;
-
-std::string path_of(const StageSettings& stage) {
-  return "stages." + stage.id;
-}
 
 // What the foils' laws do beside stretching: whether one flows with time, whether one yields at all.
 struct Flow {

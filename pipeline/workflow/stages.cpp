@@ -13,14 +13,14 @@
 
 namespace pneuma::pipeline::workflow {
 
-namespace {
-
 using schema::below;
 using yaml::Node;
 
 std::string path_of(const StageSettings& stage) {
   return stage.run == "mesh" ? "mesh" : "stages." + stage.id;
 }
+
+namespace {
 
 template <class S>
 schema::Keys<StageSettings> keys_of_stage(bool is_stage_file) {

@@ -7,6 +7,9 @@
 // the loads of stages before.
 namespace pneuma::pipeline::workflow {
 
+// Where a stage stands in a file: "mesh", "stages.gust".
+std::string path_of(const StageSettings& stage);
+
 // Form of one stage, whose id and kind its reader knows; the kind of the stage it starts from stands in stage.yaml, in
 // a user's file `link` finds it.
 Form<StageSettings> stage_form(bool is_stage_file);

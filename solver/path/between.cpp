@@ -38,14 +38,15 @@ double length_of(const Change& change) {
 }
 
 // Whether the cushion grows stiffer as it leaves the begin of a step, as a flat one does: then its first tangent leads
-// too far, and no jump is needed to fall short of it.
+// too far, and no jump is needed to fall short of it. Leaves the system evaluated at the end of the step again.
 bool stiffens(System& system, Newton& newton, const Stretch& step, double length) {
   constexpr double probe = 0.01; // of the step's length
   const Change& way = *step.begin.way;
   const double load = step.to.load_factor - step.from.load_factor;
   Configuration near = moved(system, step.from, std::copysign(probe * length / length_of(way), load) * way);
-  if (!system.evaluate(near, true).possible) return false;
-  const Look there = look_at(newton, near);
+  const Look there = system.evaluate(near, true).possible ? look_at(newton, near) : Look{};
+  Configuration end = step.to;
+  system.evaluate(end, true);
   return there.way && length_of(*there.way) < length_of(way);
 }
 

@@ -30,7 +30,7 @@ struct Stretch {
 // Why a step is too long to be taken in one; empty: nothing speaks against it. Looked at are the chord, which a jump
 // makes longer than the tangents at both ends, and the positions on the cubic between them, which may meet with an
 // objection. What stays within a hundredth of the span is not: a fold of a few elements depends on the mesh.
-// Leaves the system evaluated elsewhere.
+// The system is evaluated at the end of the step, before and after.
 std::string hidden_between(System& system, Newton& newton, const Stretch& step, const Objection& objection);
 
 } // namespace pneuma::solver::path

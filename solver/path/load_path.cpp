@@ -180,8 +180,8 @@ private:
     accept({std::move(trial), std::move(end), plan, outcome.iterations, excess});
   }
 
-  // What the way to a state that was found hides; `end`: the tangent there. Leaves the system evaluated there.
-  Fault hidden(Configuration& trial, Look& end) {
+  // What the way to a state that was found hides; `end`: the tangent there.
+  Fault hidden(const Configuration& trial, Look& end) {
     const bool flows = system_.flows_with_time();               // then the load alone does not tell the way
     if (!flows || moves_edges()) end = look_at(newton_, trial); // before the history is accepted: what flows goes on
     if (!is_looked_at_ || flows) return {};
@@ -192,7 +192,6 @@ private:
       return reason;
     };
     const std::string reason = hidden_between(system_, newton_, {at_, trial, look_, end}, objection);
-    system_.evaluate(trial, true);
     return {reason, objected, !reason.empty() && !objected};
   }
 
@@ -233,10 +232,10 @@ private:
 
   void accept(Tried step_found) {
     constexpr int easy_iterations = 8;
-    const auto& [found, look, plan, iterations, excess] = step_found;
+    auto& [found, look, plan, iterations, excess] = step_found;
     system_.accept_history();
-    at_ = found;
-    look_ = look;
+    at_ = std::move(found);
+    look_ = std::move(look);
     beyond_.reset();
     is_looked_at_ = true;
     result_.load_factor = at_.load_factor;
